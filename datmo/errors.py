@@ -1,0 +1,43 @@
+"""Named errors. Each message gives the value, the rule it breaks and the remedy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+
+class DatmoError(Exception):
+    """Base of every error the project raises on purpose."""
+
+
+class MessageError(DatmoError, ValueError):
+    """A message was given arrays of the wrong shape, type or range."""
+
+
+class ConfigError(DatmoError, ValueError):
+    """A configuration value breaks its rule."""
+
+
+class ScenarioError(DatmoError, ValueError):
+    """A scenario file or name is wrong."""
+
+
+class CloudFileError(DatmoError, ValueError):
+    """A point cloud file cannot be read."""
+
+
+class OutputError(DatmoError, OSError):
+    """A result cannot be written where it was asked for."""
+
+
+class SimulationError(DatmoError, RuntimeError):
+    """The simulated world cannot go on as the scenario asks."""
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """A phrase that offers the known names nearest to `name`, for an error message."""
+    names = sorted(known)
+    close = get_close_matches(name, names, n=3, cutoff=0.4)
+    if close:
+        return f"did you mean {' or '.join(repr(c) for c in close)}?"
+    return f"choose one of {', '.join(names)}"

@@ -1,0 +1,121 @@
+"""Clusters, Boxes and Tracks: what stands on the ground."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from datmo.arrays import F32, F64, I32, I64, U8, Array, Bool
+from datmo.errors import MessageError
+from datmo.messages.base import Message, Status
+
+
+@dataclass(frozen=True, eq=False)
+class Clusters(Message):
+    """Which cluster each point of a scan belongs to.
+
+    Attributes:
+        label: (n,) cluster of each point, -1 none; labels are 0 .. count - 1.
+        count: number of clusters.
+    """
+
+    label: I32
+    count: int = 0
+
+    def __post_init__(self) -> None:
+        self._set("label", (None,), np.int32)
+        top = int(self.label.max(initial=-1))
+        if top >= self.count:
+            raise MessageError(f"Clusters.label reaches {top}; count is {self.count}; labels lie below count")
+
+
+@dataclass(frozen=True, eq=False)
+class Boxes(Message):
+    """Upright boxes; one type serves detections, tracks and truth.
+
+    `Boxes(center=c, size=s, yaw=y)` suffices.
+
+    Attributes:
+        center: (k, 3) middle of the box [m, world].
+        size: (k, 3) length, width, height [m], length along the yaw.
+        yaw: (k,) heading of the length axis [rad, world, from +x].
+        velocity: (k, 2) [m/s, world], NaN unknown.
+        score: (k,).
+        id: (k,) -1 none.
+        kind: (k,) `Kind`.
+    """
+
+    center: F64
+    size: F64
+    yaw: F64
+    velocity: F64 = None  # type: ignore[assignment]
+    score: F32 = None  # type: ignore[assignment]
+    id: I64 = None  # type: ignore[assignment]
+    kind: U8 = None  # type: ignore[assignment]
+
+    def __post_init__(self) -> None:
+        self._set("center", (None, 3), np.float64)
+        k = len(self.center)
+        self._set("size", (k, 3), np.float64)
+        self._set("yaw", (k,), np.float64)
+        self._set("velocity", (k, 2), np.float64, np.nan)
+        self._set("score", (k,), np.float32, 1)
+        self._set("id", (k,), np.int64, -1)
+        self._set("kind", (k,), np.uint8, 0)
+
+    def __len__(self) -> int:
+        return len(self.center)
+
+    @classmethod
+    def empty(cls) -> Boxes:
+        """No boxes."""
+        return cls(center=np.zeros((0, 3)), size=np.zeros((0, 3)), yaw=np.zeros(0))
+
+    def select(self, rows: Array) -> Boxes:
+        """The boxes of `rows` (indices or a mask), in that order."""
+        names = ("center", "size", "yaw", "velocity", "score", "id", "kind")
+        return Boxes(**{name: getattr(self, name)[rows] for name in names})
+
+
+@dataclass(frozen=True, eq=False)
+class Tracks(Message):
+    """The tracker's state after a scan.
+
+    Attributes:
+        boxes: k boxes; `boxes.id` is the track id, `boxes.velocity` the estimate.
+        stamp: [s].
+        cov: (k, 5, 5) over x, y [m, world], yaw [rad], speed [m/s], yaw rate [rad/s].
+        mode_prob: (k, m) probability of each motion model.
+        status: (k,) Table 4.1; >= 5 is a confirmed track.
+        is_dynamic: (k,) bool.
+    """
+
+    boxes: Boxes
+    stamp: float = 0.0
+    cov: F64 = None  # type: ignore[assignment]
+    mode_prob: F64 = None  # type: ignore[assignment]
+    status: U8 = None  # type: ignore[assignment]
+    is_dynamic: Bool = None  # type: ignore[assignment]
+
+    def __post_init__(self) -> None:
+        k = len(self.boxes)
+        object.__setattr__(self, "stamp", float(self.stamp))
+        self._set("cov", (k, 5, 5), np.float64, np.eye(5))
+        if self.mode_prob is None:
+            object.__setattr__(self, "mode_prob", np.ones((k, 1)))
+        self._set("mode_prob", (k, None), np.float64)
+        self._set("status", (k,), np.uint8, int(Status.TRACKING))
+        self._set("is_dynamic", (k,), np.bool_, False)
+
+    def __len__(self) -> int:
+        return len(self.boxes)
+
+    @classmethod
+    def empty(cls, stamp: float = 0.0) -> Tracks:
+        """No tracks."""
+        return cls(boxes=Boxes.empty(), stamp=stamp)
+
+    def confirmed(self) -> Bool:
+        """(k,) whether each track is reported: status >= 5."""
+        return self.status >= Status.TRACKING

@@ -1,0 +1,52 @@
+"""Scan: one turn of the lidar."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from datmo.arrays import F32, F64, U8
+from datmo.messages.base import Message
+
+
+@dataclass(frozen=True, eq=False)
+class Scan(Message):
+    """One sweep of a spinning lidar. `Scan(points=xyz)` suffices.
+
+    Order of the rows: ring by ring from the top, each in firing order, as KITTI stores them.
+    Points that are not finite are legal; perception leaves them out (see `datmo.refine`).
+
+    Attributes:
+        points: (n, 3) [m, sensor], at `stamp` when `deskewed`, else at each point's own time.
+        stamp: end of the sweep [s].
+        T_world_sensor: (4, 4) takes sensor coordinates at `stamp` to world.
+        deskewed: whether the ego motion within the sweep has been taken out.
+        intensity: (n,) 0..1.
+        ring: (n,) 0 = top.
+        dt: (n,) firing time relative to `stamp` [s], <= 0.
+
+    Raises:
+        MessageError: a field has the wrong shape or type.
+    """
+
+    points: F32
+    stamp: float = 0.0
+    T_world_sensor: F64 = None  # type: ignore[assignment]
+    deskewed: bool = True
+    intensity: F32 = None  # type: ignore[assignment]
+    ring: U8 = None  # type: ignore[assignment]
+    dt: F32 = None  # type: ignore[assignment]
+
+    def __post_init__(self) -> None:
+        self._set("points", (None, 3), np.float32)
+        n = len(self.points)
+        object.__setattr__(self, "stamp", float(self.stamp))
+        self._set("T_world_sensor", (4, 4), np.float64, np.eye(4))
+        self._set("intensity", (n,), np.float32, 0)
+        self._set("ring", (n,), np.uint8, 0)
+        self._set("dt", (n,), np.float32, 0)
+
+    def __len__(self) -> int:
+        return len(self.points)
+

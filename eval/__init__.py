@@ -1,0 +1,1 @@
+"""The judge: where the simulator meets perception."""

@@ -1,0 +1,1 @@
+"""Writers of labelled clouds, one file a format."""

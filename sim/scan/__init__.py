@@ -1,0 +1,1 @@
+"""The scan: units, casting, returns."""

@@ -1,0 +1,1 @@
+"""The scene: terrain, roads, actors, traffic."""
