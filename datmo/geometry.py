@@ -17,7 +17,8 @@ def wrap_angle(angle: Array | float) -> F64:
 
 def transform(T_a_b: F64, points_b: Array) -> F64:
     """Points (n, 3) in b expressed in a, (n, 3) float64."""
-    return np.asarray(points_b, float) @ T_a_b[:3, :3].T + T_a_b[:3, 3]
+    points_a: F64 = np.asarray(points_b, float) @ T_a_b[:3, :3].T + T_a_b[:3, 3]
+    return points_a
 
 
 def inverse(T_a_b: F64) -> F64:
@@ -88,4 +89,3 @@ def iou_bev(a: F64, b: F64) -> float:
     shared = overlap_bev(a, b)
     union = polygon_area(a) + polygon_area(b) - shared
     return shared / union if union > 0 else 0.0
-

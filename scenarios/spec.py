@@ -7,6 +7,7 @@ name says so.
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
@@ -28,7 +29,9 @@ class Model(BaseModel):
 class Terrain(Model):
     """The ground. Grades are about the world origin, along the world axes."""
 
-    grade: float = Field(0.0, ge=-0.5, le=0.5, description="rise per metre along +y, the ego's first heading [m/m]")
+    grade: float = Field(
+        0.0, ge=-0.5, le=0.5, description="rise per metre along +y, the ego's first heading [m/m]"
+    )
     cross_slope: float = Field(0.0, ge=-0.3, le=0.3, description="rise per metre along +x [m/m]")
     roughness: Roughness = Field("flat", description="ISO 8608 class of the field")
     road_roughness: Roughness = Field("flat", description="ISO 8608 class of the road")
@@ -74,7 +77,7 @@ class Actor(Model):
     @model_validator(mode="after")
     def _in_order(self) -> Actor:
         times = [p.t for p in self.path]
-        if any(b <= a for a, b in zip(times, times[1:], strict=False)):
+        if any(b <= a for a, b in pairwise(times)):
             raise ValueError(f"times {times} of the path must increase; put the way-points in order")
         return self
 

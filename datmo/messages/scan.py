@@ -49,4 +49,3 @@ class Scan(Message):
 
     def __len__(self) -> int:
         return len(self.points)
-
