@@ -17,8 +17,7 @@ def wrap_angle(angle: Array | float) -> F64:
 
 def transform(T_a_b: F64, points_b: Array) -> F64:
     """Points (n, 3) in b expressed in a, (n, 3) float64."""
-    points_a: F64 = np.asarray(points_b, float) @ T_a_b[:3, :3].T + T_a_b[:3, 3]
-    return points_a
+    return np.asarray(np.asarray(points_b, float) @ T_a_b[:3, :3].T + T_a_b[:3, 3])
 
 
 def inverse(T_a_b: F64) -> F64:

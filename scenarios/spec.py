@@ -29,10 +29,8 @@ class Model(BaseModel):
 class Terrain(Model):
     """The ground. Grades are about the world origin, along the world axes."""
 
-    grade: float = Field(
-        0.0, ge=-0.5, le=0.5, description="rise per metre along +y, the ego's first heading [m/m]"
-    )
-    cross_slope: float = Field(0.0, ge=-0.3, le=0.3, description="rise per metre along +x [m/m]")
+    grade: float = Field(0.0, ge=-0.5, le=0.5, description="rise along +y, the ego's first heading [m/m]")
+    cross_slope: float = Field(0.0, ge=-0.3, le=0.3, description="rise along +x [m/m]")
     roughness: Roughness = Field("flat", description="ISO 8608 class of the field")
     road_roughness: Roughness = Field("flat", description="ISO 8608 class of the road")
     shoulder: float = Field(3.0, gt=0, le=20, description="width over which road turns into field [m]")

@@ -37,6 +37,7 @@ class Plane(Message, Surface):
     std: float = 1.0
 
     def __call__(self, xy: F64) -> tuple[F64, F64]:
+        """See `Surface`."""
         xy = np.asarray(xy, float)
         return self.a * xy[:, 0] + self.b * xy[:, 1] + self.c, np.full(len(xy), self.std)
 
