@@ -62,9 +62,7 @@ class Poses:
             if not np.isfinite(value).all():
                 raise SimulationError(f"Poses.{name} is not finite; every pose of a sweep must be known")
         if len(self.asset) != k:
-            raise SimulationError(
-                f"Poses.asset names {len(self.asset)} meshes; one is needed for each of {k}"
-            )
+            raise SimulationError(f"Poses.asset names {len(self.asset)} meshes; give one for each of {k}")
 
     def __len__(self) -> int:
         return len(self.id)
