@@ -1,0 +1,37 @@
+"""Threads for work over fixed blocks of rays: one pool a process, results in block order."""
+
+from __future__ import annotations
+
+import itertools
+import os
+from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor
+from functools import cache
+from typing import TypeVar
+
+Item = TypeVar("Item")
+Result = TypeVar("Result")
+
+
+def workers() -> int:
+    """Processors this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@cache
+def _pool(_process: int) -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(workers(), thread_name_prefix="scan")
+
+
+def spread(work: Callable[[Item], Result], items: Iterable[Item]) -> list[Result]:
+    """`work` of each item, in the order of the items, on the threads of this process.
+
+    The pool belongs to the process that made it: a forked child makes its own.
+    """
+    return list(_pool(os.getpid()).map(work, items))
+
+
+def blocks(rays: int, count: int = 16) -> list[slice]:
+    """`count` fixed slices that cover `rays`, whatever the number of threads."""
+    edges = [rays * i // count for i in range(count + 1)]
+    return [slice(a, b) for a, b in itertools.pairwise(edges)]
