@@ -1,0 +1,53 @@
+"""The ego's own body: the rays it blinds, whatever the scene."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from datmo.arrays import Bool
+from sim.scan.pattern import Pattern
+
+SKYLINE = (
+    (-180.0, -18.4),
+    (-161.0, -18.8),
+    (-156.0, -22.5),
+    (-147.0, -25.0),
+    (-138.0, -25.0),
+    (-134.0, -21.0),
+    (-122.0, -21.0),
+    (-118.0, -26.0),
+    (-75.0, -26.0),
+    (-74.0, -16.5),
+    (-63.0, -16.5),
+    (-62.0, -26.0),
+    (-31.0, -26.0),
+    (-18.0, -23.0),
+    (-11.0, -21.4),
+    (11.0, -21.4),
+    (17.0, -23.0),
+    (26.0, -26.0),
+    (118.0, -26.0),
+    (122.0, -21.0),
+    (134.0, -21.4),
+    (138.0, -25.0),
+    (147.0, -25.0),
+    (156.0, -22.5),
+    (161.0, -18.8),
+    (180.0, -18.4),
+)
+"""Outline of the vehicle as the sensor on its roof sees it: azimuth, elevation [deg]. From rear to
+rear: tail and roof, a corner of the rack, a mast, the bonnet's side, front, and back."""
+
+
+def own_body(pattern: Pattern) -> Bool:
+    """Rays (64, C) that end on the ego's own body and so return nothing.
+
+    A ray is lost where it points below the skyline of the vehicle. The outline is a plain sketch
+    fitted to the share of rays that KITTI's vehicle takes from each ring (0.22 of ring 56 rising
+    to 0.47 of ring 63: all beyond 160 degrees of azimuth, a window of some 40 degrees ahead). It is fixed to
+    the sensor: the rack is taken to rise with it.
+    """
+    azimuth, elevation = np.array(SKYLINE).T
+    a = np.rad2deg(pattern.rotor[None, :] + pattern.azimuth[:, None])
+    a = (a + 180) % 360 - 180
+    return np.asarray(np.rad2deg(pattern.elevation)[:, None] < np.interp(a, azimuth, elevation))
