@@ -1,0 +1,106 @@
+"""From gated pairs to association probabilities: independent groups, each summed exactly."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import lgamma
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from datmo.arrays import F64, I64
+from datmo.tracks.config import TrackerConfig
+from datmo.tracks.gate import Pairs
+from datmo.tracks.jpda import marginals
+
+RASTER = 160  # cells a side for the area of several gates together
+
+
+@dataclass
+class Links:
+    """Marginals: beta (p,) of each pair, missed (t,) of none; and how many links were cut."""
+
+    beta: F64
+    missed: F64
+    cut: int
+
+
+def associate(
+    pairs: Pairs, weight: F64, miss: F64, boxes: int, config: TrackerConfig, S: F64, at: F64
+) -> Links:
+    """Exact marginals of the joint events (2.69 with 1 - P_D P_G).
+
+    Args:
+        pairs: gated pairs.
+        weight: (p,) P_D N(nu) [1/m²] times what size and heading say.
+        miss: (t,) 1 - P_D P_G.
+        boxes: number of boxes.
+        config: form and density of the clutter.
+        S: (t, 2, 2), at: (t, 2) gates, for their area in the non-parametric form.
+    """
+    beta, cut = np.zeros(len(pairs)), 0
+    if config.clutter == "poisson":
+        weight = weight / config.clutter_density
+    alone, crowds = groups(pairs, len(miss), boxes)
+    beta[alone], missed = _pda(pairs.select(alone), weight[alone], miss, config)
+    for rows in crowds:
+        track, local = np.unique(pairs.track[rows], return_inverse=True)
+        box, column = np.unique(pairs.box[rows], return_inverse=True)
+        W = np.zeros((len(track), len(box)))
+        W[local, column] = weight[rows]
+        phi = None
+        if config.clutter == "nonparametric":
+            phi = clutter_weights(len(box), min(W.shape), union_area(S[track], at[track], config))
+        out, dropped = marginals(W, miss[track], phi, config.max_frontier)
+        beta[rows], missed[track], cut = out[local, column], out[:, -1], cut + dropped
+    return Links(beta, missed, cut)
+
+
+def groups(pairs: Pairs, tracks: int, boxes: int) -> tuple[I64, list[I64]]:
+    """Rows of the pairs of tracks that share no box; and of each set of tracks that share boxes,
+    directly or through others.
+    """
+    if len(pairs) == 0:
+        return np.zeros(0, np.int64), []
+    n = tracks + boxes
+    links = coo_array((np.ones(len(pairs)), (pairs.track, tracks + pairs.box)), shape=(n, n))
+    _, label = connected_components(links, directed=False)
+    of_pair = label[pairs.track]
+    crowded = np.bincount(label[:tracks], minlength=n)[of_pair] > 1
+    rows = np.flatnonzero(crowded)
+    order = rows[np.argsort(of_pair[rows], kind="stable")]
+    split = np.split(order, np.flatnonzero(np.diff(of_pair[order])) + 1) if len(order) else []
+    return np.flatnonzero(~crowded), list(split)
+
+
+def _pda(pairs: Pairs, weight: F64, miss: F64, config: TrackerConfig) -> tuple[F64, F64]:
+    """The closed form for tracks alone: beta (p,) and missed (t,); in the non-parametric form
+    m_k / V stands where the clutter density does in Poisson's.
+    """
+    none = miss.copy()
+    if config.clutter == "nonparametric":
+        count = np.bincount(pairs.track, minlength=len(miss))
+        none[pairs.track] *= count[pairs.track] / pairs.volume
+    total = none + np.bincount(pairs.track, weights=weight, minlength=len(miss))
+    return weight / total[pairs.track], np.asarray(none / total)
+
+
+def clutter_weights(boxes: int, most: int, volume: float) -> F64:
+    """phi! / V^phi by the number of boxes assigned, 0 .. most, scaled to a largest of one."""
+    phi = boxes - np.arange(most + 1)
+    log = np.array([lgamma(n + 1) for n in phi]) - phi * np.log(volume)
+    return np.asarray(np.exp(log - log.max()))
+
+
+def union_area(S: F64, at: F64, config: TrackerConfig) -> float:
+    """Area [m²] of the union of the gates (k), counted on a raster."""
+    half = np.sqrt(config.gate_chi2 * np.einsum("kii->ki", S))
+    low, high = (at - half).min(0), (at + half).max(0)
+    x, y = (low[i] + (np.arange(RASTER) + 0.5) / RASTER * (high[i] - low[i]) for i in range(2))
+    inside = np.zeros((RASTER, RASTER), np.bool_)
+    for center, inverse in zip(at, np.linalg.inv(S), strict=True):
+        dx, dy = x[:, None] - center[0], y[None] - center[1]
+        d = inverse[0, 0] * dx**2 + 2 * inverse[0, 1] * dx * dy + inverse[1, 1] * dy**2
+        inside |= d <= config.gate_chi2
+    return float(inside.mean() * np.prod(high - low))

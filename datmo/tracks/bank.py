@@ -1,0 +1,79 @@
+"""The tracks that are alive, as a struct of arrays, row-aligned."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from datmo.arrays import F64, I64, Array, Bool
+
+HISTORY = 64
+
+
+@dataclass
+class Bank:
+    """Confirmed tracks. t rows, m modes.
+
+    Attributes:
+        id: (t,) never used twice. born, seen: (t,) stamp of the first and the last hit [s].
+        fresh: (t,) whether the last scan hit it.
+        x: (t, m, 5), P: (t, m, 5, 5), mu: (t, m) of each mode.
+        missed: (t,) time without a hit where it should have been seen [s].
+        size: (t, 3) retained dimensions [m]. yaw: (t,) heading of the box [rad].
+        z: (t,) height of the box's middle [m], climb: (t,) its rate [m/s].
+        score: (t,), kind: (t,) of the last box.
+        dynamic: (t,) bool. backward: (t,) time spent going backwards [s].
+        past: (t, HISTORY, 4) stamp, x, y, speed of the last scans, newest last, NaN before.
+    """
+
+    id: I64
+    born: F64
+    seen: F64
+    fresh: Bool
+    x: F64
+    P: F64
+    mu: F64
+    missed: F64
+    size: F64
+    yaw: F64
+    z: F64
+    climb: F64
+    score: F64
+    kind: I64
+    dynamic: Bool
+    backward: F64
+    past: F64
+
+    def __len__(self) -> int:
+        return len(self.id)
+
+    @classmethod
+    def empty(cls, modes: int) -> Bank:
+        """No tracks."""
+        real, whole = np.zeros(0), np.zeros(0, np.int64)
+        x, P, mu = np.zeros((0, modes, 5)), np.zeros((0, modes, 5, 5)), np.zeros((0, modes))
+        flag, past = np.zeros(0, np.bool_), np.zeros((0, HISTORY, 4))
+        return cls(
+            whole, real, real, flag, x, P, mu, real, np.zeros((0, 3)),
+            real, real, real, real, whole, flag, real, past,
+        )  # fmt: skip
+
+    def select(self, rows: Array) -> Bank:
+        """A copy of `rows` (indices or a mask)."""
+        return self._map(lambda a: a[rows].copy())
+
+    def join(self, other: Bank) -> Bank:
+        """These tracks and then the others."""
+        pairs = ((getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
+        return Bank(*(np.concatenate(pair) for pair in pairs))
+
+    def remember(self, stamp: float, mean: F64) -> None:
+        """Append the state (t, 5) at `stamp` to the past."""
+        self.past[:, :-1] = self.past[:, 1:]
+        self.past[:, -1, 0] = stamp
+        self.past[:, -1, 1:] = mean[:, [0, 1, 3]]
+
+    def _map(self, change: Callable[[Array], Array]) -> Bank:
+        return Bank(*(change(getattr(self, f.name)) for f in fields(self)))

@@ -1,0 +1,111 @@
+"""The box tracker: whole boxes from partial ones (Alg. 5-7, 4.1-4.2; method.md section 14)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from datmo.arrays import F64, I64, Bool
+from datmo.messages import Boxes, Sight
+from datmo.tracks.bank import Bank
+from datmo.tracks.config import TrackerConfig
+from datmo.tracks.gate import Pairs
+from datmo.tracks.ukf import half_turn
+from datmo.tracks.visibility import judge
+
+BEYOND = 0.35  # [m] past an end, where rays tell whether it is real
+LEAST = 0.1  # [m] a missing extent below this is noise
+LEAP = 1.5  # a box this many times the retained one is taken for a merger first
+MERGER_GAIN = 0.05
+CLIMB_GAIN, HEIGHT_GAIN, MAX_GRADE = 0.05, 0.4, 0.2
+
+
+def yaw_is_sure(size: F64, config: TrackerConfig) -> Bool:
+    """(k,) whether the sides of a box differ enough to tell its heading, up to half a turn."""
+    return np.asarray(
+        config.use_yaw & (size[:, 0] >= config.yaw_length) & (size[:, 0] >= config.yaw_ratio * size[:, 1])
+    )
+
+
+def read(
+    bank: Bank, mean: F64, boxes: Boxes, track: I64, box: I64, sight: Sight | None, config: TrackerConfig
+) -> Pairs:
+    """Each candidate pair's measurement as the track reads it: its own axes, its whole extent."""
+    turn = half_turn(boxes.yaw[box] - bank.yaw[track])
+    crossed = np.abs(turn) > np.pi / 4
+    seen = np.where(crossed[:, None], boxes.size[box][:, 1::-1], boxes.size[box][:, :2])
+    turned = bank.yaw[track] + np.where(crossed, turn - np.copysign(np.pi / 2, turn), turn)
+    missing = np.maximum(bank.size[track, :2] - seen, 0)
+    missing[missing < LEAST] = 0
+    shift = np.zeros((len(track), 2))
+    whole: Bool = np.zeros((len(track), 2), np.bool_)
+    axes = np.stack([np.cos(turned), np.sin(turned), -np.sin(turned), np.cos(turned)], 1).reshape(-1, 2, 2)
+    center = boxes.center[box]
+    if sight is not None and config.correct_ends and len(track):
+        real = real_ends(sight, center, axes, seen, bank.size[track, 2])
+        whole = real.all(axis=2)
+        shift = whole_center(center[:, :2], axes, seen, missing, real, mean[track, :2], sight)
+        missing = np.where(whole, 0, missing)
+    spread = (config.partial_std * missing) ** 2 if sight is not None else np.zeros_like(missing)
+    R = config.position_std**2 * np.eye(2) + np.einsum("pa,pai,paj->pij", spread, axes, axes)
+    yaw = np.where(yaw_is_sure(boxes.size, config), boxes.yaw, np.nan)[box]
+    n = len(track)
+    return Pairs(
+        track, box, center[:, :2] + shift, R, seen, yaw, np.full(n, config.yaw_std**2), turned, whole,
+        np.zeros(n), np.zeros(n),
+    )  # fmt: skip
+
+
+def real_ends(sight: Sight, center: F64, axes: F64, seen: F64, height: F64) -> Bool:
+    """(p, 2, 2) by side and end (back, front): rays pass just beyond the end, so it is real."""
+    ends = np.array([-1.0, 1.0])
+    reach = (seen / 2 + BEYOND)[:, :, None] * ends
+    places = np.zeros((len(center), 2, 2, 2, 3))
+    places[..., :2] = (center[:, None, None, :2] + reach[..., None] * axes[:, :, None])[:, :, :, None]
+    places[..., 2] = (center[:, None, 2] + np.array([0.0, 0.25]) * height[:, None])[:, None, None]
+    _, empty, _ = judge(sight, places.reshape(-1, 3), np.zeros(len(center) * 8))
+    return np.asarray(empty.reshape(len(center), 2, 2, 2).any(axis=3))
+
+
+def whole_center(
+    center: F64, axes: F64, seen: F64, missing: F64, real: Bool, predicted: F64, sight: Sight
+) -> F64:
+    """Shift (p, 2) [m, world] of each centre by half the missing extent, away from the real end.
+
+    Where the rays do not tell the ends apart: away from the sensor when it stands beyond an end,
+    else towards the predicted centre, never by more than half the missing extent.
+    """
+    sensor = np.einsum("pai,pi->pa", axes, sight.T_world_sensor[:2, 3] - center)
+    wanted = np.einsum("pai,pi->pa", axes, predicted - center)
+    half = missing / 2
+    default = np.where(
+        np.abs(sensor) >= (seen + missing) / 2, -np.sign(sensor) * half, np.clip(wanted, -half, half)
+    )
+    back, front = real[:, :, 0], real[:, :, 1]
+    along = np.where(back & ~front, half, np.where(front & ~back, -half, np.where(back & front, 0, default)))
+    return np.asarray(np.einsum("pa,pai->pi", along, axes))
+
+
+def retain(bank: Bank, boxes: Boxes, pairs: Pairs, mean: F64, dt: float, config: TrackerConfig) -> None:
+    """Take the associated boxes (one pair a track) into the retained ones.
+
+    Dimensions grow quickly and shrink slowly; the heading follows sure yaws, and the motion of a
+    fast track without one; the height follows with its rate, so that a hidden track climbs on.
+    """
+    t, b = pairs.track, pairs.box
+    seen = np.column_stack([pairs.seen, boxes.size[b, 2]])
+    old = bank.size[t]
+    shrink = np.column_stack(
+        [np.where(pairs.whole, config.shrink_whole, config.shrink), np.full(len(t), 0.05)]
+    )
+    gain = np.where(seen > old, np.where(seen > LEAP * old + 0.5, MERGER_GAIN, config.grow), shrink)
+    bank.size[t] = old + gain * (seen - old)
+    sure = np.isfinite(pairs.yaw)
+    moves = np.abs(mean[t, 3]) > 2
+    target = np.where(sure, pairs.yaw, mean[t, 2])
+    step = np.where(sure | moves, np.where(moves, 0.5, 0.2), 0.0)
+    bank.yaw[t] += step * half_turn(target - bank.yaw[t])
+    limit = MAX_GRADE * np.abs(mean[t, 3])
+    error = boxes.center[b, 2] - bank.z[t]
+    bank.z[t] += HEIGHT_GAIN * error
+    bank.climb[t] = np.clip(bank.climb[t] + CLIMB_GAIN * error / max(dt, 1e-3), -limit, limit)
+    bank.score[t], bank.kind[t] = boxes.score[b], boxes.kind[b]

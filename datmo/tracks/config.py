@@ -1,0 +1,89 @@
+"""Every number the tracker is tuned by, with its unit."""
+
+from __future__ import annotations
+
+from typing import Literal, Self
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+
+class TrackerConfig(BaseModel):
+    """Tuning of the tracker; frozen, an unknown key is an error."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    # Motion (method.md 9)
+    models: tuple[Literal["cv", "ctrv", "rm"], ...] = Field(
+        ("cv", "ctrv", "rm"), min_length=1, description="motion models of the IMM, by name"
+    )
+    accel_density: float = Field(1.5, gt=0, description="white acceleration along the heading [m²/s³]")
+    heading_density: float = Field(0.01, gt=0, description="random walk of a CV heading [rad²/s]")
+    yaw_accel_density: float = Field(0.15, gt=0, description="white yaw acceleration of CTRV [rad²/s³]")
+    random_density: float = Field(1.5, gt=0, description="random walk of an RM position [m²/s]")
+    cv_keeps_yaw_rate: bool = Field(False, description="CV keeps its yaw rate, as the thesis has it")
+
+    # IMM (11)
+    stay: float = Field(2.0, gt=0, description="mean time in one mode [s]")
+    transition_rates: tuple[tuple[float, ...], ...] | None = Field(
+        None, description="rate i -> j [1/s], rows sum to zero; replaces `stay`"
+    )
+    freeze_unseen: bool = Field(True, description="modes neither mix nor move while a track is unobserved")
+    mix_yaw_rate: bool = Field(False, description="models without a yaw rate mix one in (textbook IMM)")
+
+    # Measurement (8, 14)
+    position_std: float = Field(0.2, gt=0, description="noise of a whole box's centre [m]")
+    yaw_std: float = Field(0.06, gt=0, description="noise of a sure box yaw [rad]")
+    use_yaw: bool = Field(True, description="box yaw is a third measurement, modulo pi")
+    yaw_gate: float = Field(3.5, gt=0, description="a yaw further off than this is no measurement [sigma]")
+    yaw_length: float = Field(1.5, ge=0, description="least box length whose yaw is sure [m]")
+    yaw_ratio: float = Field(1.3, ge=1, description="least length over width whose yaw is sure")
+    min_score: float = Field(0.0, description="boxes with a lower score are left out")
+    birth_score: float = Field(0.0, description="boxes with a lower score start no track")
+
+    # Association (12)
+    gate_chi2: float = Field(13.8, gt=0, description="gate on the squared Mahalanobis distance, q = 2")
+    detection_prob: float = Field(0.9, gt=0, lt=1, description="P_D of an object in full view")
+    gate_prob: float = Field(0.999, gt=0, lt=1, description="P_G, probability of the gate")
+    visible_floor: float = Field(0.2, gt=0, le=1, description="P_D never falls below this share of itself")
+    clutter: Literal["poisson", "nonparametric"] = Field("poisson", description="form of the event weights")
+    clutter_density: float = Field(0.005, gt=0, description="false boxes [1/m²], Poisson form")
+    weigh_shape: bool = Field(True, description="size and heading weigh the association")
+    max_frontier: int = Field(14, ge=2, le=20, description="bits of the exact association's widest cut")
+
+    # Births and deaths (13)
+    confirm_hits: int = Field(5, ge=2, le=5, description="associations that confirm a track")
+    birth_misses: int = Field(1, ge=0, description="misses a new track may have before confirmation")
+    birth_speed_std: float = Field(10.0, gt=0, description="prior deviation of a new track's velocity [m/s]")
+    claim: float = Field(0.5, gt=0, le=1, description="a box claimed less than this may start a track")
+    max_missed: float = Field(0.8, gt=0, description="life without a hit where it should be seen [s]")
+    max_hidden: float = Field(6.0, gt=0, description="life without a hit in all [s]")
+    max_coast: float = Field(1.0, gt=0, description="life without a hit when no Sight is given [s]")
+    max_position_std: float = Field(10.0, gt=0, description="a track less certain than this dies [m]")
+    duplicate_distance: float = Field(1.0, ge=0, description="tracks nearer than this are one [m]")
+    duplicate_spread: float = Field(0.3, ge=0, description="summed deviation of the difference [m]")
+    recall: bool = Field(True, description="match new tracks to coasting and lost ones (second stage)")
+    recall_chi2: float = Field(16.0, gt=0, description="gate of that match, six quantities")
+
+    # Static or dynamic (Alg. 4)
+    window: float = Field(1.0, gt=0, description="time over which motion is judged [s]")
+    static_speed: float = Field(0.5, gt=0, description="mean speed below which a track may be static [m/s]")
+
+    # Box tracker (14)
+    grow: float = Field(0.5, gt=0, le=1, description="gain when a box is larger than retained")
+    shrink: float = Field(0.02, ge=0, le=1, description="gain when a box is smaller than retained")
+    shrink_whole: float = Field(0.2, ge=0, le=1, description="the same where rays show both ends to be real")
+    correct_ends: bool = Field(True, description="move partial boxes to where the whole one is")
+    partial_std: float = Field(0.15, ge=0, description="extra deviation per metre of missing extent")
+
+    @model_validator(mode="after")
+    def _rates(self) -> Self:
+        rates = self.transition_rates
+        if rates is None:
+            return self
+        n = len(self.models)
+        square = len(rates) == n and all(len(row) == n for row in rates)
+        if not square or any(abs(sum(row)) > 1e-9 for row in rates):
+            raise ValueError(f"transition_rates must be {n} x {n} with rows that sum to zero, got {rates}")
+        if any(rates[i][j] < 0 for i in range(n) for j in range(n) if i != j):
+            raise ValueError(f"transition_rates off the diagonal must not be negative, got {rates}")
+        return self

@@ -1,0 +1,90 @@
+"""Interacting multiple models (2.44-2.54; method.md section 11).
+
+Arrays over tracks t and modes j: x (t, m, 5), P (t, m, 5, 5), mu (t, m).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from datmo.arrays import F64, Bool
+from datmo.tracks.config import TrackerConfig
+from datmo.tracks.models import OMEGA
+from datmo.tracks.ukf import mean_about, residual
+
+TERMS = 24  # of the exponential series at one expected step: the rest is below 1e-23
+
+
+def rates(config: TrackerConfig) -> F64:
+    """Transition rates (m, m) [1/s]: i -> j off the diagonal, rows sum to zero."""
+    if config.transition_rates is not None:
+        return np.array(config.transition_rates, float)
+    m = len(config.models)
+    leave = 1 / (config.stay * max(m - 1, 1))
+    return np.asarray(np.full((m, m), leave) - np.eye(m) * leave * m)
+
+
+def transition(rate: F64, dt: float) -> F64:
+    """Probability (m, m) of i -> j within `dt` [s]: expm(rate dt).
+
+    By uniformisation: a Poisson number of steps of the chain I + rate / fastest, all terms
+    positive, after halving dt until few steps are expected; squared back.
+    """
+    fastest = float(-np.diag(rate).min(initial=0))
+    if fastest * dt <= 0:
+        return np.eye(len(rate))
+    halvings = max(0, int(np.ceil(np.log2(fastest * dt))))
+    expected = fastest * dt / 2**halvings
+    chain, term = np.eye(len(rate)) + rate / fastest, np.exp(-expected) * np.eye(len(rate))
+    p = term.copy()
+    for k in range(1, TERMS):
+        term = np.einsum("ij,jk->ik", term, chain) * expected / k
+        p += term
+    for _ in range(halvings):
+        p = np.einsum("ij,jk->ik", p, p)
+    return np.asarray(p / p.sum(axis=1, keepdims=True))
+
+
+def lend_yaw_rate(x: F64, P: F64, mu: F64, has_yaw_rate: Bool) -> tuple[F64, F64]:
+    """Give models without a yaw rate that of the likeliest model that has one.
+
+    Their own stands at zero by construction; averaged in, it would straighten every turn.
+    The lent coordinate comes uncorrelated, which keeps P positive definite.
+    """
+    if has_yaw_rate.all() or not has_yaw_rate.any():
+        return x, P
+    donors = np.flatnonzero(has_yaw_rate)
+    donor = donors[np.argmax(mu[:, donors], axis=1)]
+    rows = np.arange(len(x))
+    x, P = x.copy(), P.copy()
+    for j in np.flatnonzero(~has_yaw_rate):
+        x[:, j, OMEGA] = x[rows, donor, OMEGA]
+        P[:, j, OMEGA, :] = P[:, j, :, OMEGA] = 0
+        P[:, j, OMEGA, OMEGA] = P[rows, donor, OMEGA, OMEGA]
+    return x, P
+
+
+def mix(x: F64, P: F64, mu: F64, p: F64) -> tuple[F64, F64, F64]:
+    """Interaction (2.44-2.47): states that each filter starts from, and mu_bar (t, m)."""
+    mu_bar = np.einsum("ti,ij->tj", mu, p)
+    weights = mu[:, :, None] * p[None] / np.maximum(mu_bar, 1e-300)[:, None, :]  # (t, i, j)
+    w = np.swapaxes(weights, 1, 2)  # (t, j, i)
+    spread_x = np.broadcast_to(x[:, None], (*w.shape, 5))
+    mean = mean_about(spread_x, w, x)
+    d = residual(spread_x, mean[:, :, None])
+    mixed = np.einsum("tji,tikl->tjkl", w, P) + np.einsum("tji,tjik,tjil->tjkl", w, d, d)
+    return mean, mixed, mu_bar
+
+
+def combine(x: F64, P: F64, mu: F64) -> tuple[F64, F64]:
+    """One mean (t, 5) and covariance (t, 5, 5) of all modes, same weights in both (2.53-2.54)."""
+    best = x[np.arange(len(x)), np.argmax(mu, axis=1)]
+    mean = mean_about(x, mu, best)
+    d = residual(x, mean[:, None])
+    return mean, np.asarray(np.einsum("tm,tmij->tij", mu, P) + np.einsum("tm,tmi,tmj->tij", mu, d, d))
+
+
+def reweigh(mu_bar: F64, likelihood: F64) -> F64:
+    """Mode probabilities (t, m) after a scan (2.52); never quite zero, so that a mode can return."""
+    mu = np.maximum(mu_bar * likelihood, 1e-12 * mu_bar.max(axis=1, keepdims=True, initial=0))
+    return np.asarray(mu / mu.sum(axis=1, keepdims=True))

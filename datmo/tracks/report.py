@@ -1,0 +1,57 @@
+"""From the tracker's own arrays to messages."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from datmo.arrays import F64, U8
+from datmo.messages import Boxes, Tracks
+from datmo.tracks.bank import Bank
+from datmo.tracks.birth import Newborns
+from datmo.tracks.config import TrackerConfig
+from datmo.tracks.ukf import half_turn
+
+
+def predicted_boxes(bank: Bank, mean: F64) -> Boxes:
+    """Boxes (t) of the bank at the combined mean (t, 5), heading along the motion."""
+    heading = mean[:, 2]
+    yaw = heading + half_turn(bank.yaw - heading)
+    velocity = mean[:, 3, None] * np.column_stack([np.cos(heading), np.sin(heading)])
+    return Boxes(
+        center=np.column_stack([mean[:, :2], bank.z]),
+        size=bank.size,
+        yaw=np.arctan2(np.sin(yaw), np.cos(yaw)),
+        velocity=velocity,
+        score=bank.score.astype(np.float32),
+        id=bank.id,
+        kind=bank.kind.astype(np.uint8),
+    )
+
+
+def as_tracks(
+    bank: Bank, mean: F64, P: F64, status: U8, new: Newborns, stamp: float, config: TrackerConfig
+) -> Tracks:
+    """Confirmed tracks and new ones, by id."""
+    x, cov, _ = new.polar(config)
+    young = Boxes(
+        center=np.column_stack([x[:, :2], new.z]),
+        size=new.size,
+        yaw=x[:, 2],
+        velocity=new.x[:, 2:],
+        score=new.score.astype(np.float32),
+        id=new.id,
+        kind=new.kind.astype(np.uint8),
+    )
+    old = predicted_boxes(bank, mean)
+    names = ("center", "size", "yaw", "velocity", "score", "id", "kind")
+    both = Boxes(**{n: np.concatenate([getattr(old, n), getattr(young, n)]) for n in names})
+    modes = bank.mu.shape[1]
+    order = np.argsort(both.id, kind="stable")
+    return Tracks(
+        boxes=both.select(order),
+        stamp=stamp,
+        cov=np.concatenate([P, cov])[order],
+        mode_prob=np.concatenate([bank.mu, np.full((len(new), modes), 1 / modes)])[order],
+        status=np.concatenate([status, np.minimum(new.hits, 4).astype(np.uint8)])[order],
+        is_dynamic=np.concatenate([bank.dynamic, np.zeros(len(new), np.bool_)])[order],
+    )

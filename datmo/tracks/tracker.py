@@ -1,0 +1,199 @@
+"""The tracker: IMM-UKF-JPDA with life in time and retained boxes (method.md 9-14)."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+
+from datmo.arrays import F64, Bool
+from datmo.errors import ConfigError, MessageError
+from datmo.messages import Boxes, Sight, Tracks
+from datmo.tracks import manage
+from datmo.tracks.assign import assign, innovations, likeliest
+from datmo.tracks.bank import Bank
+from datmo.tracks.birth import Newborns
+from datmo.tracks.box import retain
+from datmo.tracks.config import TrackerConfig
+from datmo.tracks.confirm import as_bank, take_over, unclaimed
+from datmo.tracks.engine_filterpy import FilterpyFilters
+from datmo.tracks.estimate import Estimator
+from datmo.tracks.filters import Filters
+from datmo.tracks.recall import recall
+from datmo.tracks.report import as_tracks, predicted_boxes
+from datmo.tracks.ukf import BatchedFilters
+from datmo.tracks.visibility import shares
+
+HIT = 0.5  # association probability from which a track counts as seen
+ENGINES: dict[str, type[Filters]] = {"batched": BatchedFilters, "filterpy": FilterpyFilters}
+
+
+class Tracker:
+    """Tracks boxes over time; `Tracker().step(boxes, stamp)` suffices.
+
+    Args:
+        config: tuning.
+        engine: "batched", or "filterpy": the same tracker on filterpy's filters, slow and readable.
+
+    Attributes:
+        notes: what the last step has to say: boxes dropped, links cut, covariances repaired.
+        nis: for each track id that was hit in the last step, the normalised innovation squared of
+            its likeliest box, and its dimension.
+    """
+
+    def __init__(
+        self, config: TrackerConfig | None = None, engine: Literal["batched", "filterpy"] = "batched"
+    ) -> None:
+        if engine not in ENGINES:
+            raise ConfigError(f"engine {engine!r} is not known; choose one of {sorted(ENGINES)}")
+        self.config = config or TrackerConfig()
+        self._estimator = Estimator(self.config, ENGINES[engine]())
+        self._next_id = 1
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget every track; ids go on, so none is used twice."""
+        self._bank = Bank.empty(len(self.config.models))
+        self._lost = Bank.empty(len(self.config.models))
+        self._new = Newborns.start(np.zeros(0, np.int64), 0.0, Boxes.empty(), self.config)
+        self._stamp: float | None = None
+        self.notes: dict[str, str] = {}
+        self.nis: dict[int, tuple[float, int]] = {}
+
+    def step(self, boxes: Boxes, stamp: float, sight: Sight | None = None) -> Tracks:
+        """Take the boxes of one scan.
+
+        Args:
+            boxes: detections [world]. Boxes that are not finite or have a side that is not positive
+                are left out, with a note.
+            stamp: time of the scan [s]; must be later than the last one.
+            sight: how far the rays of this scan saw; tells expected visibility, empty space and
+                which end of a box is real. Without it every place counts as visible and boxes
+                count as whole.
+
+        Returns:
+            Every valid track, by id; `status >= 5` is a confirmed one.
+
+        Raises:
+            MessageError: stamp is not finite or does not follow the last one (`reset()` first).
+        """
+        self.notes, self.nis = {}, {}
+        stamp = float(stamp)
+        dt = self._elapsed(stamp)
+        boxes = self._accept(boxes)
+        bank, before = self._bank, self._bank.mu
+        mean, P = self._predict(dt)
+        visible, empty = self._expect(mean, P, sight)
+        pairs, links, ratio = assign(bank, mean, P, boxes, visible, sight, self.config)
+        best = likeliest(pairs, links, HIT)
+        self.nis = innovations(bank, mean, P, best)
+        self._estimator.update(bank, pairs, links, ratio, before)
+        hit = links.missed < HIT
+        mean, P = self._estimator.combined(bank)
+        bank.fresh, bank.seen = hit, np.where(hit, stamp, bank.seen)
+        retain(bank, boxes, best, mean, dt, self.config)
+        manage.charge(bank, hit, visible, empty, dt)
+        manage.judge_motion(bank, mean, P, hit, stamp, self.config)
+        manage.turn_around(bank, mean, dt)
+        bank.remember(stamp, mean)
+        self._note_cuts(links.cut)
+        self._births(boxes, unclaimed(boxes, pairs, links, bank, mean, hit, self.config))
+        return self._settle(sight is not None)
+
+    def predicted(self, stamp: float) -> Boxes:
+        """Boxes of the confirmed tracks where they are expected at `stamp` [s]; changes nothing."""
+        last = stamp if self._stamp is None else self._stamp
+        bank, jitters = self._bank.select(np.arange(len(self._bank))), self._estimator.filters.jitters
+        mean, _ = self._estimator.predict(bank, max(float(stamp) - last, 0.0))
+        self._estimator.filters.jitters = jitters
+        return predicted_boxes(bank, mean)
+
+    def _elapsed(self, stamp: float) -> float:
+        if not np.isfinite(stamp):
+            raise MessageError(f"stamp {stamp} is not finite; give the time of the scan in seconds")
+        if self._stamp is not None and stamp <= self._stamp:
+            raise MessageError(
+                f"stamp {stamp} s does not follow the last one, {self._stamp} s; "
+                "stamps must increase; call reset() to begin a new sequence"
+            )
+        dt = 0.0 if self._stamp is None else stamp - self._stamp
+        if dt > self.config.max_hidden:
+            self.reset()
+            self.notes["gap"] = f"{dt:.1f} s without a scan; all tracks ended"
+            dt = 0.0
+        self._stamp = stamp
+        return dt
+
+    def _accept(self, boxes: Boxes) -> Boxes:
+        numbers = np.column_stack([boxes.center, boxes.size, boxes.yaw, boxes.score])
+        sound = np.isfinite(numbers).all(axis=1) & (boxes.size > 0).all(axis=1)
+        if not sound.all():
+            bad = f"{int((~sound).sum())} of {len(boxes)}"
+            self.notes["boxes dropped"] = (
+                f"{bad} with a value that is not finite or a side that is not positive"
+            )
+        return boxes.select(sound & (boxes.score >= self.config.min_score))
+
+    def _predict(self, dt: float) -> tuple[F64, F64]:
+        self._new.predict(dt, self.config)
+        if len(self._lost):
+            self._estimator.predict(self._lost, dt)
+        return self._estimator.predict(self._bank, dt)
+
+    def _expect(self, mean: F64, P: F64, sight: Sight | None) -> tuple[F64, F64]:
+        if sight is None:
+            return np.ones(len(mean)), np.zeros(len(mean))
+        center = np.column_stack([mean[:, :2], self._bank.z])
+        return shares(sight, center, self._bank.size, self._bank.yaw, P[:, :2, :2])
+
+    def _note_cuts(self, cut: int) -> None:
+        if cut:
+            self.notes["association bounded"] = f"the {cut} weakest links of crowded groups were cut"
+        if self._estimator.filters.jitters:
+            self.notes["covariances repaired"] = f"{self._estimator.filters.jitters} in this step"
+            self._estimator.filters.jitters = 0
+
+    def _births(self, boxes: Boxes, free: Bool) -> None:
+        rest, new, config = boxes.select(free), self._new, self.config
+        rows, columns = new.match(rest, config)
+        new.correct(rows, rest.select(columns), config)
+        missed = np.ones(len(new), np.bool_)
+        missed[rows] = False
+        new.misses += missed
+        fresh = rest.score >= config.birth_score
+        fresh[columns] = False
+        born = rest.select(fresh)
+        ids = np.arange(self._next_id, self._next_id + len(born))
+        self._next_id += len(born)
+        kept = new.select(new.misses <= config.birth_misses)
+        self._new = kept.join(Newborns.start(ids, float(self._stamp or 0.0), born, config))
+
+    def _settle(self, has_sight: bool) -> Tracks:
+        """Confirm, recall, bury; what is alive now."""
+        config, stamp = self.config, float(self._stamp or 0.0)
+        ripe = self._new.hits >= config.confirm_hits
+        grown, self._new = as_bank(self._new.select(ripe), stamp, config), self._new.select(~ripe)
+        pool = self._bank.join(self._lost)
+        mean, P = self._estimator.combined(pool)
+        old, young = recall(pool, mean, P, grown, stamp, config)
+        rest = np.ones(len(grown), np.bool_)
+        rest[young] = False
+        taken = np.zeros(len(pool), np.bool_)
+        taken[old] = True
+        living = np.arange(len(pool)) < len(self._bank)
+        back = take_over(pool.select(old), grown.select(young))
+        self._lost = pool.select(~living & ~taken)
+        self._bury(pool.select(living & ~taken).join(back).join(grown.select(rest)), has_sight)
+        share = manage.spent(self._bank, stamp, has_sight, config)
+        mean, P = self._estimator.combined(self._bank)
+        return as_tracks(self._bank, mean, P, manage.status(share), self._new, stamp, config)
+
+    def _bury(self, bank: Bank, has_sight: bool) -> None:
+        config, stamp = self.config, float(self._stamp or 0.0)
+        mean, P = self._estimator.combined(bank)
+        living = manage.alive(mean, P, manage.spent(bank, stamp, has_sight, config), config)
+        double = manage.duplicates(bank, mean, config)
+        self._bank = bank.select(living & ~double)
+        finite = np.isfinite(mean).all(axis=1)
+        lost = self._lost.join(bank.select(~living & ~double & finite))
+        self._lost = lost.select(stamp - lost.seen < config.max_hidden)

@@ -1,0 +1,59 @@
+"""What the rays of a scan say about a place: seen, hidden or empty."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from datmo.arrays import F64, Bool
+from datmo.messages import Sight
+
+HEIGHTS = np.array([-0.2, 0.1, 0.35])  # where a box is looked for, in heights from its middle
+SIDES = np.array([-0.35, 0.0, 0.35])  # and across the line of sight, in extents
+SLACK = 0.3  # [m] a surface this much nearer or farther is still the place itself
+
+
+def shares(sight: Sight, center: F64, size: F64, yaw: F64, cov: F64) -> tuple[F64, F64]:
+    """Share of each predicted box that should be seen, and share that is seen to be empty.
+
+    Looked for at the five sigma points of the place, three heights and three places across each.
+
+    Args:
+        sight: how far the rays saw.
+        center: (t, 3) [m, world]. size: (t, 3) [m]. yaw: (t,) [rad]. cov: (t, 2, 2) [m²].
+
+    Returns:
+        visible (t,), empty (t,), each 0..1; empty <= visible. Where no ray was fired a place
+        counts as visible: nothing excuses its absence.
+    """
+    if len(center) == 0:
+        return np.zeros(0), np.zeros(0)
+    toward = center[:, :2] - sight.T_world_sensor[:2, 3]
+    bearing = np.arctan2(toward[:, 1], toward[:, 0])
+    c, s = np.abs(np.cos(yaw - bearing)), np.abs(np.sin(yaw - bearing))
+    depth, across = (size[:, 0] * c + size[:, 1] * s) / 2, size[:, 0] * s + size[:, 1] * c
+    side = np.stack([-np.sin(bearing), np.cos(bearing)], 1)
+    step = np.sqrt(2) * np.linalg.cholesky(cov + 1e-6 * np.eye(2)).swapaxes(1, 2)
+    sigma = np.concatenate([np.zeros((len(center), 1, 2)), step, -step], 1)
+    places = np.zeros((len(center), 5, len(SIDES), len(HEIGHTS), 3))
+    sideways = (SIDES[None] * across[:, None])[..., None] * side[:, None]
+    places[..., :2] = (center[:, None, None, :2] + sigma[:, :, None] + sideways[:, None])[:, :, :, None]
+    places[..., 2] = (center[:, 2, None] + HEIGHTS[None] * size[:, 2, None])[:, None, None]
+    kind = judge(sight, places.reshape(-1, 3), np.repeat(depth, places[0].size // 3))
+    hidden, empty, known = (k.reshape(len(center), -1).sum(1) for k in kind)
+    share = np.where(known > 0, 1 - hidden / np.maximum(known, 1), 1.0)
+    return share, np.where(known > 0, empty / np.maximum(known, 1), 0.0)
+
+
+def judge(sight: Sight, places: F64, depth: F64) -> tuple[Bool, Bool, Bool]:
+    """Whether each place (n, 3) lies behind all that is seen there, before it, and whether any ray tells.
+
+    Args:
+        sight: how far the rays saw.
+        places: (n, 3) [m, world].
+        depth: (n,) half the extent of what is looked for along the ray [m].
+    """
+    distance, near, far = sight.look(places)
+    known = np.isfinite(near)
+    hidden = known & (np.where(known, far, np.inf) < distance - depth - SLACK)
+    empty = known & (np.where(known, near, -np.inf) > distance + depth + SLACK)
+    return hidden, empty, known
