@@ -1,0 +1,85 @@
+"""Who may be matched with whom: gates, bird's-eye distances and the optimal assignment."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from datmo.arrays import F64, I64, U8, Array, Bool
+from datmo.geometry import transform
+from datmo.messages import VEHICLES, Boxes, Frame, Truth, is_any
+
+VEHICLE_GATE, OTHER_GATE = 2.0, 1.0
+VEHICLE_REACH, OTHER_REACH = 4.0, 2.0
+BOX_MARGIN = 0.2
+
+
+def gates(truth: Boxes) -> F64:
+    """Gate (k,) [m] of each true object: max(2, half its length) for vehicles, 1 for others."""
+    wide = np.maximum(VEHICLE_GATE, truth.size[:, 0] / 2)
+    return np.where(is_any(truth.kind, VEHICLES), wide, OTHER_GATE)
+
+
+def reaches(kind: U8) -> F64:
+    """d0 (k,) [m], the distance at which similarity ends: 4 for vehicles, 2 for others."""
+    return np.where(is_any(kind, VEHICLES), VEHICLE_REACH, OTHER_REACH)
+
+
+def distances(a: F64, b: F64) -> F64:
+    """Bird's-eye distances (k, m) [m] between places (k, >= 2) and (m, >= 2)."""
+    difference = a[:, None, :2] - b[None, :, :2]
+    return np.hypot(difference[..., 0], difference[..., 1])
+
+
+def assign(cost: F64, allowed: Bool) -> tuple[I64, I64]:
+    """The one-to-one pairs that are most in number, then least in total cost (Hungarian).
+
+    Args:
+        cost: (k, m), read only where allowed. allowed: (k, m).
+
+    Returns:
+        rows and columns of the pairs, by rising row.
+    """
+    if not allowed.any():
+        return np.zeros(0, np.int64), np.zeros(0, np.int64)
+    # One forbidden pair must cost more than all the allowed ones can save.
+    forbidden = 1 + 2 * min(cost.shape) * (1 + float(np.abs(cost[allowed]).max()))
+    row, column = linear_sum_assignment(np.where(allowed, cost, forbidden))
+    kept = allowed[row, column]
+    return row[kept].astype(np.int64), column[kept].astype(np.int64)
+
+
+class Returns:
+    """The returns that perception holds for obstacles, by place, to ask what a box is made of."""
+
+    def __init__(self, frame: Frame, truth: Truth) -> None:
+        points = frame.scan.points
+        rows = np.flatnonzero(~frame.ground.is_ground & np.isfinite(points).all(1))
+        world = transform(frame.scan.T_world_sensor, points[rows])[:, :2]
+        order = np.argsort(world[:, 0], kind="stable")
+        self._xy: Array = world[order]
+        self._is_thing: Bool = (truth.thing >= 0)[rows[order]]
+
+    def on_things(self, boxes: Boxes) -> tuple[Bool, Bool]:
+        """Whether most obstacle returns inside each box come from things, and whether it has any.
+
+        Args:
+            boxes: k boxes [world].
+
+        Returns:
+            on_thing (k,), holds_returns (k,).
+        """
+        on_thing, holds = np.zeros(len(boxes), bool), np.zeros(len(boxes), bool)
+        for i, (center, size, yaw) in enumerate(zip(boxes.center, boxes.size, boxes.yaw, strict=True)):
+            half = size[:2] / 2 + BOX_MARGIN
+            radius = float(np.hypot(half[0], half[1]))
+            low, high = np.searchsorted(self._xy[:, 0], [center[0] - radius, center[0] + radius])
+            offset = self._xy[low:high] - center[:2]
+            near = np.flatnonzero(np.abs(offset[:, 1]) <= radius)
+            x, y = offset[near].T
+            c, s = np.cos(yaw), np.sin(yaw)
+            inside = (np.abs(c * x + s * y) <= half[0]) & (np.abs(c * y - s * x) <= half[1])
+            made_of = self._is_thing[low:high][near[inside]]
+            holds[i] = len(made_of) > 0
+            on_thing[i] = holds[i] and bool(2 * np.count_nonzero(made_of) > len(made_of))
+        return on_thing, holds
