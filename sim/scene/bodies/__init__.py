@@ -1,0 +1,1 @@
+"""Meshes of vehicles, persons and things, each in its actor frame."""
