@@ -1,0 +1,111 @@
+"""Clusters to upright boxes that stand on the ground."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from datmo.arrays import F64, I64, Array
+from datmo.boxes.config import BoxConfig
+from datmo.boxes.hull import least_area_angles
+from datmo.boxes.outline import group, outlines
+from datmo.boxes.rectangle import extents, search
+from datmo.boxes.rules import Rejection, apply_rules, guess_kinds
+from datmo.errors import MessageError
+from datmo.messages import Boxes, Clusters
+
+
+def fit_boxes(
+    points_world: Array,
+    clusters: Clusters,
+    ground_z: Array,
+    sensor_xy: Array,
+    config: BoxConfig | None = None,
+) -> tuple[Boxes, tuple[Rejection, ...]]:
+    """A box around what is seen of each cluster (method.md sections 6 and 7).
+
+    The heading comes from the rectangle search over the outline, the extent from all the points,
+    the base from the mean ground under them, the top from the highest. The rule filter sees this
+    final box. Length >= width, so where only the rear of a car is seen the yaw lies along the
+    rear: yaw is known modulo pi/2 from one side, modulo pi at best. The size is that of the seen
+    part; completing it is the tracker's work.
+
+    Args:
+        points_world: (n, 3) [m, world].
+        clusters: labels of the points.
+        ground_z: (n,) height of the ground under each point [m, world].
+        sensor_xy: (2,) where the sensor is [m, world].
+        config: settings.
+
+    Returns:
+        Boxes in the order of the labels, yaw in [-pi/2, pi/2), score in (0, 1) growing with the
+        number of points, and the rejections, in the order of the labels too: together they name
+        every label once.
+
+    Raises:
+        MessageError: the arrays do not have one row a point, or a labelled one is not finite.
+    """
+    config = config or BoxConfig()
+    points, ground = np.asarray(points_world, float), np.asarray(ground_z, float)
+    _check(points, clusters, ground)
+    rows, starts = group(clusters.label, clusters.count)
+    number = np.diff(starts)
+    xy = np.ascontiguousarray(points[rows, :2])
+    angle = _angles(xy, starts, np.asarray(sensor_xy, float), config)
+    center, length_width, yaw = _rectangles(extents(xy, starts, angle), angle)
+    base, top = _heights(points[rows, 2], ground[rows], starts)
+    size = np.column_stack([length_width, np.maximum(top - base, 0)])
+    passed, rejections = apply_rules(size, number, config.filter)
+    boxes = Boxes(
+        center=np.column_stack([center, base + size[:, 2] / 2]),
+        size=size,
+        yaw=yaw,
+        score=(number / (number + config.half_points)).astype(np.float32),
+        kind=guess_kinds(size, config.kinds),
+    )
+    return boxes.select(passed), rejections
+
+
+def _angles(xy: F64, starts: I64, sensor_xy: F64, config: BoxConfig) -> F64:
+    """Angle (k,) of each cluster's rectangle [rad, 0 <= angle < pi/2]."""
+    if config.criterion == "hull":
+        return np.asarray(least_area_angles(xy, starts))
+    outline, length = outlines(xy, starts, sensor_xy, config.outline_points, np.deg2rad(config.outline_step))
+    step = np.deg2rad(config.step)
+    return search(outline, length, step, config.nearest, config.criterion, config.weights)
+
+
+def _rectangles(extent: F64, angle: F64) -> tuple[F64, F64, F64]:
+    """Centre (k, 2), length and width (k, 2), yaw (k,) in [-pi/2, pi/2) of each rectangle."""
+    x, y = (extent[:, 0] + extent[:, 1]) / 2, (extent[:, 2] + extent[:, 3]) / 2
+    c, s = np.cos(angle), np.sin(angle)
+    center = np.column_stack([c * x - s * y, s * x + c * y])
+    along, across = extent[:, 1] - extent[:, 0], extent[:, 3] - extent[:, 2]
+    yaw = np.where(along >= across, angle, angle - np.pi / 2)
+    return center, np.column_stack([np.maximum(along, across), np.minimum(along, across)]), yaw
+
+
+def _heights(z: F64, ground: F64, starts: I64) -> tuple[F64, F64]:
+    """Mean ground and highest point (k,) of each cluster [m, world]; 0 for a label without points."""
+    base, top = np.zeros(len(starts) - 1), np.zeros(len(starts) - 1)
+    held = np.flatnonzero(np.diff(starts))
+    if len(held):
+        base[held] = np.add.reduceat(ground, starts[held]) / np.diff(starts)[held]
+        top[held] = np.maximum.reduceat(z, starts[held])
+    return base, top
+
+
+def _check(points: F64, clusters: Clusters, ground: F64) -> None:
+    n = len(clusters.label)
+    if points.shape != (n, 3) or ground.shape != (n,):
+        raise MessageError(
+            f"fit_boxes was given points {points.shape} and ground_z {ground.shape} for {n} labels; "
+            "they must be (n, 3) and (n,); give one row a point"
+        )
+    held = clusters.label >= 0
+    bad = held & ~(np.isfinite(points).all(1) & np.isfinite(ground))
+    if bad.any():
+        row = int(np.argmax(bad))
+        raise MessageError(
+            f"fit_boxes: point {row} is {points[row]} on ground {ground[row]}; a point with a label must be "
+            "finite; give it the label -1"
+        )

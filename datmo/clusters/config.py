@@ -1,0 +1,41 @@
+"""Settings of clustering and of merging; lengths in metres."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+
+class ClusterConfig(BaseModel):
+    """How elevated points become clusters (method.md section 5).
+
+    The cell follows the spacing of the returns. Along the ring an HDL-64 at 10 Hz fires every
+    0.003 rad, so 0.008 rad holds two firings with one lost between them; along the ray the gaps
+    are those between the laser rings on a bonnet or a roof, several times wider.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    grid: Literal["polar", "plain"] = Field(
+        "polar", description="cells that grow with range, or the thesis's plain grid (Alg. 8)"
+    )
+    cell: float = Field(0.25, gt=0, description="smallest cell, and the cell of the plain grid [m]")
+    growth_along: float = Field(0.016, gt=0, description="length of a cell along the ray over its range [1]")
+    growth_across: float = Field(0.008, gt=0, description="width of a cell across the ray over its range [1]")
+    max_range: float = Field(80.0, gt=0, description="points farther than this belong to no cluster [m]")
+    min_height: float = Field(0.3, description="lowest height above the ground that links cells [m]")
+    max_height: float = Field(3.5, gt=0, description="points higher than this belong to no cluster [m]")
+
+
+class MergeConfig(BaseModel):
+    """When clusters under one predicted box become one (method.md section 8, Alg. 9)."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    share: float = Field(
+        0.5, ge=0, le=1, description="overlap over the smaller area that makes a candidate [1]"
+    )
+    area_factor: float = Field(1.3, gt=0, description="largest merged area over the predicted area [1]")
+    tolerance: float = Field(0.4, ge=0, description="how far the merged size may exceed the predicted [m]")
+    pad: float = Field(0.1, gt=0, description="least extent of a footprint, so that a line has an area [m]")
