@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from time import perf_counter
 
+import numpy as np
+
+from datmo.arrays import F64
 from datmo.boxes import fit_boxes
 from datmo.clusters import cluster, merge_clusters
 from datmo.config import DatmoConfig
 from datmo.geometry import transform
 from datmo.ground import GroundSegmenter
-from datmo.messages import Frame, Scan
+from datmo.messages import Frame, Ground, Scan
 from datmo.refine import refine
 from datmo.sight import make_sight
 from datmo.tracks import Tracker
@@ -28,4 +31,44 @@ class Datmo:
 
     def step(self, scan: Scan) -> Frame:
         """One scan in, everything known after it out."""
-        ...
+        clock = Stopwatch()
+        keep = refine(scan, self.config.refine)
+        clock.lap("refine")
+        ground = self.ground.step(scan.points, keep)
+        clock.lap("ground")
+        height_above = scan.points[:, 2] - ground.height
+        elevated = keep & ~ground.is_ground
+        clusters = cluster(scan.points, height_above, elevated, self.config.clusters)
+        places = transform(scan.T_world_sensor, scan.points)
+        clusters = merge_clusters(places, clusters, self.tracker.predicted(scan.stamp), self.config.merge)
+        clock.lap("clusters")
+        boxes, rejected = fit_boxes(
+            places, clusters, ground_below(scan, ground), scan.T_world_sensor[:2, 3], self.config.boxes
+        )
+        clock.lap("boxes")
+        sight = make_sight(scan, keep)
+        tracks = self.tracker.step(boxes, scan.stamp, sight)
+        clock.lap("tracks")
+        notes = self.tracker.notes | {f"cluster {r.cluster}": str(r) for r in rejected}
+        return Frame(scan, ground, clusters, boxes, tracks, clock.milliseconds, notes)
+
+
+class Stopwatch:
+    """Milliseconds between laps, by name."""
+
+    def __init__(self) -> None:
+        self.milliseconds: dict[str, float] = {}
+        self._last = perf_counter()
+
+    def lap(self, name: str) -> None:
+        """Note the time since the last lap under `name`."""
+        now = perf_counter()
+        self.milliseconds[name] = (now - self._last) * 1e3
+        self._last = now
+
+
+def ground_below(scan: Scan, ground: Ground) -> F64:
+    """World height (n,) [m] of the ground where the line through each point along z meets it."""
+    R, t = scan.T_world_sensor[:3, :3], scan.T_world_sensor[:3, 3]
+    xy = scan.points[:, :2].astype(float)
+    return np.asarray(xy @ R[2, :2] + ground.height * R[2, 2] + t[2])
