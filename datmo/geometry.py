@@ -49,7 +49,7 @@ def corners_bev(center: F64, size: F64, yaw: F64) -> F64:
     c, s = np.cos(yaw)[:, None], np.sin(yaw)[:, None]
     x = c * half[..., 0] - s * half[..., 1]
     y = s * half[..., 0] + c * half[..., 1]
-    return np.stack([x, y], -1) + np.asarray(center, float)[:, None, :2]
+    return np.asarray(np.stack([x, y], -1) + np.asarray(center, float)[:, None, :2])
 
 
 def polygon_area(polygon: F64) -> float:
