@@ -10,6 +10,7 @@ import numpy as np
 
 from datmo.arrays import F32, F64, I32
 from sim.scan.embree import Mesh
+from sim.scene.assets import asset
 
 
 class Shape(Protocol):
@@ -67,6 +68,4 @@ def body_of(shape: Shape) -> Body:
 @cache
 def body(key: str) -> Body:
     """The body of a catalogue asset ("car/3"), built once a process."""
-    from sim.scene.assets import asset  # here, so that casting alone needs no catalogue
-
     return body_of(asset(key))

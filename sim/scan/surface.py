@@ -14,8 +14,8 @@ from sim.scan.caster import Hits
 from sim.scan.merge import TERRAIN, THING
 from sim.scan.things import Things
 
-REFLECTIVITY = {Kind.ROAD: 0.1, Kind.SIDEWALK: 0.2, Kind.FIELD: 0.3, Kind.WALL: 0.3, Kind.POLE: 0.3}
-"""Diffuse, at 905 nm: asphalt, paving, grass and soil, plaster, galvanised steel."""
+REFLECTIVITY = {Kind.ROAD: 0.1, Kind.SIDEWALK: 0.2, Kind.FIELD: 0.3}
+"""Of the ground, diffuse, at 905 nm: asphalt, paving, grass and soil."""
 LEVEL = {Kind.ROAD: 0.22, Kind.SIDEWALK: 0.31, Kind.FIELD: 0.36, Kind.WALL: 0.24, Kind.POLE: 0.3}
 """Mean intensity where it is not 0; with the zeros, the class means of real HDL-64 sweeps."""
 GLOSS = {Kind.PEDESTRIAN: 0.7}
@@ -57,6 +57,8 @@ def surfaces(
         rays = np.flatnonzero(hits.winner == THING)
         kind[rays], thing[rays] = things.kind[hits.triangle[rays]], things.thing[hits.triangle[rays]]
     reflectivity, level = _table(REFLECTIVITY)[kind], _table(LEVEL)[kind]
+    if things is not None:
+        reflectivity[rays] = things.reflectivity[hits.triangle[rays]]
     rays = np.flatnonzero(hits.winner >= 0)
     row = hits.winner[rays]
     kind[rays] = kinds[row]

@@ -77,7 +77,7 @@ class Lidar:
         self._ground = Mesh(terrain.vertices, terrain.triangles)
         self._terrain_kind = np.ascontiguousarray(terrain.kind).ravel()
         self._things = place(things, terrain)
-        static = None if self._things is None else Mesh(self._things.vertices, self._things.triangles)
+        static = None if self._things is None else self._things.mesh
         blind = own_body(self.pattern)
         if not sensor.body_mask:
             blind[:] = False

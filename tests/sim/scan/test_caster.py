@@ -185,7 +185,7 @@ def test_account_of_an_occluder(kit: SimpleNamespace, bodies: Bodies) -> None:
 def test_account_of_things_and_terrain(kit: SimpleNamespace, bodies: Bodies) -> None:
     grid = pattern(unit("hdl64e-s3-20171102"), 20)
     shape = kit.box(0.5, 4.0, 1.2)
-    wall = Mesh(shape.vertices + np.float32([6, 0, 0]), shape.triangles)
+    wall = Mesh(shape.vertices + np.array([6, 0, 0], np.float32), shape.triangles)
     poses = kit.poses_of(
         grid,
         lambda _: np.eye(4),

@@ -3,13 +3,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from datmo.arrays import F64
+from datmo.arrays import F64, Array
 from datmo.errors import SimulationError
 from sim.scan.embree import MISS, Mesh
 from sim.scan.pool import blocks, spread
 
 
-def nearest_hit(vertices: F64, triangles: F64, origin: F64, direction: F64) -> float:
+def nearest_hit(vertices: F64, triangles: Array, origin: F64, direction: F64) -> float:
     """Moeller and Trumbore's ray, one triangle after the other; inf where none is met."""
     best = np.inf
     for a, b, c in vertices[triangles]:
