@@ -49,8 +49,9 @@ def _append(
     l2 = max(var[j], 0.0) + noise
     pivot = np.sqrt(l2)
     beta = (y - mean[j]) / pivot
+    inverse = 1 / pivot
     for t in range(t0, n):
-        row[t] /= pivot
+        row[t] *= inverse
         mean[t] += row[t] * beta
         var[t] -= row[t] * row[t]
     return beta, l2
@@ -111,20 +112,11 @@ def grow(r: F64, y: F64, L: F64, noise: F64, seed: Bool, above: float, rules: F6
 
 @numba.njit(cache=True, nogil=True)
 def grow_segments(
-    r: F64,
-    y: F64,
-    L: F64,
-    noise: F64,
-    candidate: Bool,
-    seed: Bool,
-    above: float,
-    rules: F64,
-    member: Bool,
-    mean: F64,
+    r: F64, y: F64, L: F64, noise: F64, use: Bool, seed: Bool, member: Bool, mean: F64, above: float, rules: F64
 ) -> None:
-    """`grow` for each row of (M, N) arrays; writes member and mean (M, N) where `candidate`."""
+    """`grow` for each row of (M, N) arrays; writes member and mean (M, N) where `use`."""
     for m in range(len(r)):
-        at = np.flatnonzero(candidate[m])
+        at = np.flatnonzero(use[m])
         joined, level = grow(r[m][at], y[m][at], L[m][at], noise[m][at], seed[m][at], above, rules)
         for i in range(len(at)):
             member[m, at[i]], mean[m, at[i]] = joined[i], level[i]
@@ -132,20 +124,11 @@ def grow_segments(
 
 @numba.njit(cache=True, nogil=True)
 def fit_segments(
-    r: F64,
-    y: F64,
-    L: F64,
-    noise: F64,
-    member: Bool,
-    nodes: F64,
-    L_nodes: F64,
-    sf2: float,
-    mean: F64,
-    var: F64,
+    r: F64, y: F64, L: F64, noise: F64, use: Bool, L_nodes: F64, mean: F64, var: F64, nodes: F64, sf2: float
 ) -> None:
     """`regress` for each row of (M, N) arrays at nodes (Q,); writes mean, var (M, Q)."""
     for m in range(len(r)):
-        at = np.flatnonzero(member[m])
+        at = np.flatnonzero(use[m])
         mean[m], var[m], _, _ = regress(r[m][at], y[m][at], noise[m][at], L[m][at], nodes, L_nodes[m], sf2)
 
 

@@ -10,11 +10,12 @@ from datmo.arrays import F64, Bool
 from datmo.ground.config import GroundConfig
 from datmo.ground.gp import evidence, fit_segments, grow_segments
 from datmo.ground.lines import LineRules, as_array, segment_slopes
+from datmo.ground.threads import each, over_rows
 
 LEARNING_SEGMENTS = 8
-RATIOS = (0.05, 0.1, 0.2, 0.4, 0.8)
+RATIOS = (0.05, 0.1, 0.2, 0.3, 0.45, 0.7, 1.0)
 FACTORS = (0.25, 0.5, 1.0, 2.0, 4.0)
-ABOVE = 2.0
+ABOVE = 1.0
 DOUBT = 20.0
 
 
@@ -84,18 +85,21 @@ def learn(data: Data, config: GroundConfig) -> Hyper:
     rows = np.argsort(-count, kind="stable")[:LEARNING_SEGMENTS]
     rows = rows[count[rows] >= 3]
     n = int(count[rows].sum())
-    best, found = -np.inf, start(config)
-    for factor in FACTORS if n else ():
-        scale = factor * start(config).scale
-        for ratio in RATIOS:
-            noise = np.full(data.r.shape, ratio**2)
-            fit, log_det = evidence(data.r, data.y, scale * data.shape, noise, data.use, rows)
-            sf2 = max(fit / n, 1e-8)
-            value = -0.5 * (n * np.log(sf2) + log_det)
-            if value > best:
-                sf = np.sqrt(sf2)
-                best, found = value, Hyper(scale, float(sf), float(max(sf * ratio, config.noise_floor)))
-    return found
+    if not n:
+        return start(config)
+
+    def profile(choice: tuple[float, float]) -> tuple[float, float]:
+        scale, ratio = choice
+        noise = np.full(data.r.shape, ratio**2)
+        square, log_det = evidence(data.r, data.y, scale * data.shape, noise, data.use, rows)
+        sf2 = max(square / n, 1e-8)
+        return -0.5 * (n * float(np.log(sf2)) + log_det), sf2
+
+    choices = [(factor * start(config).scale, ratio) for factor in FACTORS for ratio in RATIOS]
+    found = each(profile, choices)
+    best = max(range(len(found)), key=lambda k: found[k][0])
+    (scale, ratio), sf = choices[best], float(np.sqrt(found[best][1]))
+    return Hyper(scale, sf, max(sf * ratio, config.noise_floor))
 
 
 def grow(data: Data, seed: Bool, doubtful: Bool, hyper: Hyper, config: GroundConfig) -> tuple[Bool, F64]:
@@ -109,7 +113,7 @@ def grow(data: Data, seed: Bool, doubtful: Bool, hyper: Hyper, config: GroundCon
     above = ABOVE if config.asymmetric else 0.0
     member, mean = np.zeros(data.r.shape, bool), np.zeros(data.r.shape)
     L = hyper.scale * data.shape
-    grow_segments(data.r, data.y, L, noise, data.use, seed, above, rules, member, mean)
+    over_rows(grow_segments, (data.r, data.y, L, noise, data.use, seed, member, mean), (above, rules))
     return member, noise + (above * np.maximum(data.y - mean, 0)) ** 2
 
 
@@ -117,5 +121,5 @@ def fit(data: Data, noise: F64, nodes: F64, hyper: Hyper) -> tuple[F64, F64]:
     """Mean [m] and variance [m²] of the latent height over h0 at the nodes, both (M, Q)."""
     mean, var = np.zeros((len(data.r), len(nodes))), np.zeros((len(data.r), len(nodes)))
     L, L_nodes = hyper.scale * data.shape, hyper.scale * data.shape_nodes
-    fit_segments(data.r, data.y, L, noise, data.use, nodes, L_nodes, hyper.sf**2, mean, var)
+    over_rows(fit_segments, (data.r, data.y, L, noise, data.use, L_nodes, mean, var), (nodes, hyper.sf**2))
     return mean, var

@@ -119,12 +119,17 @@ class GroundSegmenter:
     def _surface(
         self, plane: F64, sheet: Sheet, data: process.Data, noise: F64, hyper: process.Hyper
     ) -> PolarSurface:
-        """h0 plus the processes, joined; its deviation grows away from what was seen."""
+        """h0 plus the processes, joined.
+
+        The deviation grows away from what was seen, and holds the part of σ_n that the sensor's own
+        noise does not explain: that is roughness within the cells, and so height.
+        """
         grid, config = self._grid, self.config
         mean, var = process.fit(data, noise, grid.nodes, hyper)
         mean += sheet(grid.xy(grid.nodes)).reshape(mean.shape)
         away = np.minimum(config.drift * gaps(data.use, grid.centers, grid.nodes), config.most_std)
-        std = np.sqrt(var + away**2)
+        rough = max(hyper.sn**2 - config.noise_floor**2, 0.0)
+        std = np.sqrt(var + rough + away**2)
         # All segments share the place of their first node, the sensor's foot.
         mean[:, 0], std[:, 0] = mean[:, 0].mean(), std[:, 0].mean()
         return PolarSurface(plane, grid.nodes, mean, std)

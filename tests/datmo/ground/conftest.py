@@ -26,13 +26,19 @@ ROUGHNESS = {
 
 @dataclass(frozen=True)
 class Scene:
-    """points (n, 3) [m, sensor], truth aligned with them; object -1 is terrain."""
+    """points (n, 3) [m, sensor], truth aligned with them; object -1 is terrain; relief from above."""
 
     points: Array
     ring: Array
     is_ground: Bool
     height: F64
     object: I32
+    relief: F64
+
+    def true_height(self, xy: F64) -> F64:
+        """Height (n,) of the terrain [m, sensor]."""
+        foot = height_at(self.relief, 0.0, 0.0) + HEIGHT
+        return np.array([height_at(self.relief, x, y) for x, y in xy]) - foot
 
 
 def field(rms: float, rng: np.random.Generator) -> F64:
@@ -141,7 +147,7 @@ def make_scene(
     points = direction[seen] * reach[seen, None]
     height = np.array([height_at(z, x, y) for x, y in points[:, :2]]) - origin[2]
     ring = np.repeat(np.arange(64, dtype=np.uint8), columns)[seen]
-    return Scene(points.astype(np.float32), ring, hit[seen] == -1, height, hit[seen])
+    return Scene(points.astype(np.float32), ring, hit[seen] == -1, height, hit[seen], z)
 
 
 def scores(scene: Scene, is_ground: Bool, movers: int = 17, limit: float = 50.0) -> tuple[float, float]:
