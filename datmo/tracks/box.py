@@ -13,6 +13,7 @@ from datmo.tracks.ukf import half_turn
 from datmo.tracks.visibility import judge
 
 BEYOND = 0.35  # [m] past an end, where rays tell whether it is real
+END_SLACK = 0.15  # [m] the end's own face lies `BEYOND` behind that place
 LEAST = 0.1  # [m] a missing extent below this is noise
 LEAP = 1.5  # a box this many times the retained one is taken for a merger first
 MERGER_GAIN = 0.05
@@ -35,17 +36,17 @@ def read(
     seen = np.where(crossed[:, None], boxes.size[box][:, 1::-1], boxes.size[box][:, :2])
     turned = bank.yaw[track] + np.where(crossed, turn - np.copysign(np.pi / 2, turn), turn)
     missing = np.maximum(bank.size[track, :2] - seen, 0)
-    missing[missing < LEAST] = 0
+    missing = np.where(missing < LEAST, 0.0, missing)
     shift = np.zeros((len(track), 2))
-    whole: Bool = np.zeros((len(track), 2), np.bool_)
+    whole = np.full((len(track), 2), sight is None)
     axes = np.stack([np.cos(turned), np.sin(turned), -np.sin(turned), np.cos(turned)], 1).reshape(-1, 2, 2)
     center = boxes.center[box]
     if sight is not None and config.correct_ends and len(track):
         real = real_ends(sight, center, axes, seen, bank.size[track, 2])
-        whole = real.all(axis=2)
+        whole = np.asarray(real.all(axis=2))
         shift = whole_center(center[:, :2], axes, seen, missing, real, mean[track, :2], sight)
-        missing = np.where(whole, 0, missing)
-    spread = (config.partial_std * missing) ** 2 if sight is not None else np.zeros_like(missing)
+    missing = np.where(whole, 0.0, missing)
+    spread = (config.partial_std * missing) ** 2
     R = config.position_std**2 * np.eye(2) + np.einsum("pa,pai,paj->pij", spread, axes, axes)
     yaw = np.where(yaw_is_sure(boxes.size, config), boxes.yaw, np.nan)[box]
     n = len(track)
@@ -62,7 +63,7 @@ def real_ends(sight: Sight, center: F64, axes: F64, seen: F64, height: F64) -> B
     places = np.zeros((len(center), 2, 2, 2, 3))
     places[..., :2] = (center[:, None, None, :2] + reach[..., None] * axes[:, :, None])[:, :, :, None]
     places[..., 2] = (center[:, None, 2] + np.array([0.0, 0.25]) * height[:, None])[:, None, None]
-    _, empty, _ = judge(sight, places.reshape(-1, 3), np.zeros(len(center) * 8))
+    _, empty, _ = judge(sight, places.reshape(-1, 3), np.zeros(len(center) * 8), END_SLACK)
     return np.asarray(empty.reshape(len(center), 2, 2, 2).any(axis=3))
 
 
@@ -94,10 +95,10 @@ def retain(bank: Bank, boxes: Boxes, pairs: Pairs, mean: F64, dt: float, config:
     t, b = pairs.track, pairs.box
     seen = np.column_stack([pairs.seen, boxes.size[b, 2]])
     old = bank.size[t]
-    shrink = np.column_stack(
-        [np.where(pairs.whole, config.shrink_whole, config.shrink), np.full(len(t), 0.05)]
-    )
-    gain = np.where(seen > old, np.where(seen > LEAP * old + 0.5, MERGER_GAIN, config.grow), shrink)
+    whole = np.column_stack([pairs.whole, np.zeros(len(t), np.bool_)])
+    grow = np.where(whole, config.whole_gain, config.grow)
+    shrink = np.where(whole, config.whole_gain, config.shrink)
+    gain = np.where(seen > old, np.where(seen > LEAP * old + 0.5, MERGER_GAIN, grow), shrink)
     bank.size[t] = old + gain * (seen - old)
     sure = np.isfinite(pairs.yaw)
     moves = np.abs(mean[t, 3]) > 2

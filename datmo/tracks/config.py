@@ -31,7 +31,7 @@ class TrackerConfig(BaseModel):
     mix_yaw_rate: bool = Field(False, description="models without a yaw rate mix one in (textbook IMM)")
 
     # Measurement (8, 14)
-    position_std: float = Field(0.2, gt=0, description="noise of a whole box's centre [m]")
+    position_std: float = Field(0.15, gt=0, description="noise of a whole box's centre [m]")
     yaw_std: float = Field(0.06, gt=0, description="noise of a sure box yaw [rad]")
     use_yaw: bool = Field(True, description="box yaw is a third measurement, modulo pi")
     yaw_gate: float = Field(3.5, gt=0, description="a yaw further off than this is no measurement [sigma]")
@@ -57,7 +57,7 @@ class TrackerConfig(BaseModel):
     claim: float = Field(0.5, gt=0, le=1, description="a box claimed less than this may start a track")
     max_missed: float = Field(0.8, gt=0, description="life without a hit where it should be seen [s]")
     max_hidden: float = Field(6.0, gt=0, description="life without a hit in all [s]")
-    max_coast: float = Field(1.0, gt=0, description="life without a hit when no Sight is given [s]")
+    max_coast: float = Field(0.4, gt=0, description="life without a hit when no Sight is given [s]")
     max_position_std: float = Field(10.0, gt=0, description="a track less certain than this dies [m]")
     duplicate_distance: float = Field(1.0, ge=0, description="tracks nearer than this are one [m]")
     duplicate_spread: float = Field(0.3, ge=0, description="summed deviation of the difference [m]")
@@ -71,7 +71,7 @@ class TrackerConfig(BaseModel):
     # Box tracker (14)
     grow: float = Field(0.5, gt=0, le=1, description="gain when a box is larger than retained")
     shrink: float = Field(0.02, ge=0, le=1, description="gain when a box is smaller than retained")
-    shrink_whole: float = Field(0.2, ge=0, le=1, description="the same where rays show both ends to be real")
+    whole_gain: float = Field(0.2, ge=0, le=1, description="gain either way where both ends are real")
     correct_ends: bool = Field(True, description="move partial boxes to where the whole one is")
     partial_std: float = Field(0.15, ge=0, description="extra deviation per metre of missing extent")
 

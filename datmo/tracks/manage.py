@@ -25,7 +25,7 @@ def spent(bank: Bank, stamp: float, has_sight: bool, config: TrackerConfig) -> F
 
 def status(share: F64) -> U8:
     """Table 4.1 with drifting as spans of time: 5 hit, 6-10 by the share of life spent."""
-    drift = int(Status.DRIFTING) + np.floor(np.clip(share, 0, 0.999) * DRIFTS)
+    drift = int(Status.DRIFTING) + np.floor(np.clip(share + 1e-9, 0, 0.999) * DRIFTS)
     return np.where(share <= 0, int(Status.TRACKING), drift).astype(np.uint8)
 
 

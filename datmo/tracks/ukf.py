@@ -37,8 +37,18 @@ def mean_about(x: F64, weights: F64, reference: F64) -> F64:
     return np.asarray(mean)
 
 
-def cholesky(P: F64) -> tuple[F64, int]:
-    """Lower factors (n, 5, 5), and how many matrices needed a jitter to have one."""
+def square_root(P: F64) -> tuple[F64, int]:
+    """Factors C (n, 5, 5), C C' = P, and how many matrices needed a jitter to have one.
+
+    Taken from the last coordinate up: the columns that turn and speed up do not depend on how the
+    world's axes lie, and those of the place alone enter every model linearly. So a turned world
+    gives turned results, which the usual factor, place first, does not.
+    """
+    C, repaired = _cholesky(P[:, ::-1, ::-1])
+    return C[:, ::-1, ::-1], repaired
+
+
+def _cholesky(P: F64) -> tuple[F64, int]:
     try:
         return np.asarray(np.linalg.cholesky(P), np.float64), 0
     except np.linalg.LinAlgError:
@@ -51,7 +61,7 @@ def cholesky(P: F64) -> tuple[F64, int]:
 
 def sigma_points(x: F64, P: F64) -> tuple[F64, int]:
     """Sigma points (n, 11, 5) of (n, 5), (n, 5, 5), and the number of repaired covariances."""
-    C, repaired = cholesky((N + LAMBDA) * P)
+    C, repaired = square_root((N + LAMBDA) * P)
     columns = np.swapaxes(C, -1, -2)
     return np.concatenate([x[:, None], x[:, None] + columns, x[:, None] - columns], 1), repaired
 

@@ -44,16 +44,17 @@ def shares(sight: Sight, center: F64, size: F64, yaw: F64, cov: F64) -> tuple[F6
     return share, np.where(known > 0, empty / np.maximum(known, 1), 0.0)
 
 
-def judge(sight: Sight, places: F64, depth: F64) -> tuple[Bool, Bool, Bool]:
+def judge(sight: Sight, places: F64, depth: F64, slack: float = SLACK) -> tuple[Bool, Bool, Bool]:
     """Whether each place (n, 3) lies behind all that is seen there, before it, and whether any ray tells.
 
     Args:
         sight: how far the rays saw.
         places: (n, 3) [m, world].
         depth: (n,) half the extent of what is looked for along the ray [m].
+        slack: a surface this much nearer or farther is still the place itself [m].
     """
     distance, near, far = sight.look(places)
     known = np.isfinite(near)
-    hidden = known & (np.where(known, far, np.inf) < distance - depth - SLACK)
-    empty = known & (np.where(known, near, -np.inf) > distance + depth + SLACK)
+    hidden = known & (np.where(known, far, np.inf) < distance - depth - slack)
+    empty = known & (np.where(known, near, -np.inf) > distance + depth + slack)
     return hidden, empty, known
