@@ -41,7 +41,7 @@ class Traffic(Model):
     """Vehicles driven by highway-env."""
 
     environment: str | None = Field("intersection-v1", description="a highway-env id, or null for none")
-    vehicles: int = Field(10, ge=0, le=100, description="vehicles kept on the map, the ego not counted")
+    vehicles: int = Field(10, ge=0, le=100, description="vehicles kept within range, the ego not counted")
     warm_up: float = Field(3.0, ge=0, le=60, description="played before the first scan [s]")
     config: dict[str, Any] = Field(default_factory=dict, description="highway-env's own config keys")
 
@@ -71,6 +71,7 @@ class Actor(Model):
     kind: Literal["car", "truck", "pedestrian"]
     path: tuple[WayPoint, ...] = Field(min_length=1)
     yaw_deg: float | None = Field(None, description="heading where the path has one point [deg, world]")
+    variant: int = Field(0, ge=0, description="which mesh of its kind")
 
     @model_validator(mode="after")
     def _in_order(self) -> Actor:
@@ -115,6 +116,12 @@ class Ego(Model):
 
     control: Literal["autopilot", "agent", "parked"] = "autopilot"
     speed: float = Field(8.0, ge=0, le=40, description="the autopilot's cruise [m/s]")
+    start: float | None = Field(
+        None,
+        ge=0,
+        le=10_000,
+        description="at the first scan, ahead of its first lane's end [m]; null: anywhere",
+    )
 
 
 class Bound(Model):
