@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from datmo.arrays import F64, I64, U8, Bool
-from datmo.geometry import corners_bev, iou_bev
+from datmo.geometry import corners_bev, overlap_bev
 from datmo.messages import VEHICLES, Frame, Kind, Truth, is_any
 from eval.metrics.matching import Returns, assign, distances, gates
 from eval.metrics.ratio import mean, ratio, spread
@@ -69,10 +69,12 @@ def box_errors(frame: Frame, truth: Truth, matched: Matched) -> dict[str, list[f
     sensor = frame.scan.T_world_sensor[:2, 3]
     nearest = np.argmin(np.linalg.norm(b - sensor, axis=2), axis=1)
     corner = b[np.arange(len(d)), nearest]
+    shared = np.array([overlap_bev(p, q) for p, q in zip(a, b, strict=True)])
+    area = found.size[:, 0] * found.size[:, 1] + true.size[:, 0] * true.size[:, 1]
     return {
         "center_error": np.linalg.norm((found.center - true.center)[:, :2], axis=1).tolist(),
         "yaw_error": np.abs(turn)[is_any(true.kind, VEHICLES)].tolist(),
-        "iou": [iou_bev(p, q) for p, q in zip(a, b, strict=True)],
+        "iou": (shared / (area - shared)).tolist(),
         "corner_error": np.linalg.norm(a - corner[:, None], axis=2).min(1).tolist(),
         "length_error": (found.size[:, 0] - true.size[:, 0]).tolist(),
     }

@@ -11,6 +11,7 @@ from datmo.arrays import I64, Array, Bool
 from datmo.geometry import inverse, transform
 from datmo.messages import Frame, Status, Visibility
 from eval.metrics.history import History
+from eval.metrics.matching import finite
 from eval.metrics.ratio import mean, spread
 
 OWNED_FOR = 0.5
@@ -78,7 +79,7 @@ def in_empty_space(frame: Frame, rows: I64) -> Bool:
     if not len(coasting):
         return empty
     points: Array = frame.scan.points[::THINNING].astype(float)
-    points = points[np.isfinite(points).all(1)]
+    points = points[finite(points)]
     boxes = frame.tracks.boxes.select(rows[coasting])
     center = transform(inverse(frame.scan.T_world_sensor), boxes.center)
     half = boxes.size[:, :2].min(1) / 2

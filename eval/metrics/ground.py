@@ -17,6 +17,9 @@ BANDS = (0.0, 10.0, 20.0, 30.0, 50.0)
 BAND_NAMES = ("0-10", "10-20", "20-30", "30-50")
 FOOT = 0.1
 EDGES = bin_edges()
+STEPS = 20.0
+IS_SOFT = is_any(np.arange(256, dtype=np.uint8), VEHICLES + PERSONS)
+START_BIN = np.searchsorted(EDGES, np.arange(0, EDGES[-1], 1 / STEPS), side="right").clip(1) - 1
 
 
 def grid_centres() -> F64:
@@ -28,17 +31,19 @@ def grid_centres() -> F64:
 
 
 def cell_of(xy: Array) -> I64:
-    """Cell (n,) of the fixed grid that each place (n, 2) [m, sensor] lies in, -1 outside it."""
+    """Cell (n,) of the fixed grid that each finite place (n, 2) [m, sensor] lies in, -1 outside it."""
     r = np.hypot(xy[:, 0], xy[:, 1])
     segment = np.floor((np.arctan2(xy[:, 1], xy[:, 0]) + np.pi) * (SEGMENTS / (2 * np.pi)))
-    ring = np.searchsorted(EDGES, r, side="right") - 1
-    cell = (segment.astype(np.int64) % SEGMENTS) * BINS + ring
-    return np.where((ring >= 0) & (ring < BINS), cell, -1)
+    within = (r >= EDGES[0]) & (r < EDGES[-1])
+    # A table finds the bin or the one before it; steps are finer than the narrowest bin.
+    ring = START_BIN[(np.where(within, r, EDGES[0]) * STEPS).astype(np.int64)]
+    ring = ring + (r >= EDGES[ring + 1])
+    return np.where(within, (segment.astype(np.int64) % SEGMENTS) * BINS + ring, -1)
 
 
 def band_of(r: Array) -> I64:
     """Range band (n,) of horizontal ranges (n,) [m], an index into `BAND_NAMES`."""
-    return np.clip(np.searchsorted(BANDS, r, side="right") - 1, 0, len(BAND_NAMES) - 1)
+    return np.asarray(sum((r >= start).astype(np.int64) for start in BANDS[1:-1]), np.int64)
 
 
 def label_counts(frame: Frame, truth: Truth) -> Counter[Any]:
@@ -50,16 +55,15 @@ def label_counts(frame: Frame, truth: Truth) -> Counter[Any]:
     """
     points = frame.scan.points
     r = np.hypot(points[:, 0], points[:, 1])
-    rows = np.flatnonzero((r <= RADIUS) & np.isfinite(points[:, 2]))
-    called, true = frame.ground.is_ground[rows], truth.is_ground[rows]
-    code = band_of(r[rows]) * 4 + true * 2 + called
+    near = (r <= RADIUS) & np.isfinite(points[:, 2])
+    code = band_of(r[near]) * 4 + truth.is_ground[near] * 2 + frame.ground.is_ground[near]
     table = np.bincount(code, minlength=4 * len(BAND_NAMES))
     counts: Counter[Any] = Counter()
     for i, count in enumerate(table.tolist()):
         counts["labels", i // 4, bool(i & 2), bool(i & 1)] = count
 
-    soft = is_any(truth.kind[rows], VEHICLES + PERSONS)
-    rows, called = rows[soft], called[soft]
+    rows = np.flatnonzero(near & IS_SOFT[truth.kind])
+    called = frame.ground.is_ground[rows]
     high = points[rows, 2] - truth.height[rows] > FOOT
     counts["leakable"], counts["leaked"] = len(rows), int(called.sum())
     counts["high_leakable"], counts["high_leaked"] = int(high.sum()), int((called & high).sum())

@@ -11,6 +11,7 @@ from datmo.arrays import F32, F64, U8, Bool
 from datmo.bins import BINS, SEGMENTS
 from datmo.messages import Frame, Kind, Relief, Truth
 from eval.metrics.ground import BAND_NAMES, RADIUS, band_of, cell_of
+from eval.metrics.matching import finite
 from eval.metrics.ratio import mean, ratio, root, spread
 
 MISSING_ERROR = 1.0
@@ -58,8 +59,8 @@ def heights(frame: Frame, truth: Truth, relief: Relief, blind_radius: float) -> 
         blind_radius: [m]; unseen places nearer than this do not count.
     """
     r = np.hypot(relief.xy[:, 0], relief.xy[:, 1])
-    points = frame.scan.points[truth.is_ground]
-    hit = cell_of(points[np.isfinite(points).all(1)])
+    points = frame.scan.points
+    hit = cell_of(points[truth.is_ground & finite(points), :2])
     holds = np.zeros(SEGMENTS * BINS + 1, bool)
     holds[hit] = True
     holds[-1] = False  # the place of returns outside the grid

@@ -6,12 +6,12 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from datmo.arrays import F64, I64, U8, Array, Bool
-from datmo.geometry import transform
 from datmo.messages import VEHICLES, Boxes, Frame, Truth, is_any
 
 VEHICLE_GATE, OTHER_GATE = 2.0, 1.0
 VEHICLE_REACH, OTHER_REACH = 4.0, 2.0
 BOX_MARGIN = 0.2
+STRIP = 0.5
 
 
 def gates(truth: Boxes) -> F64:
@@ -49,16 +49,26 @@ def assign(cost: F64, allowed: Bool) -> tuple[I64, I64]:
     return row[kept].astype(np.int64), column[kept].astype(np.int64)
 
 
+def finite(points: Array) -> Bool:
+    """(n,) whether all three coordinates are finite."""
+    return np.asarray(np.isfinite(points[:, 0] + points[:, 1] + points[:, 2]))
+
+
 class Returns:
     """The returns that perception holds for obstacles, by place, to ask what a box is made of."""
 
     def __init__(self, frame: Frame, truth: Truth) -> None:
-        points = frame.scan.points
-        rows = np.flatnonzero(~frame.ground.is_ground & np.isfinite(points).all(1))
-        world = transform(frame.scan.T_world_sensor, points[rows])[:, :2]
-        order = np.argsort(world[:, 0], kind="stable")
-        self._xy: Array = world[order]
-        self._is_thing: Bool = (truth.thing >= 0)[rows[order]]
+        points, T = frame.scan.points, frame.scan.T_world_sensor
+        rows = np.flatnonzero(~frame.ground.is_ground & finite(points))
+        held = points[rows].astype(float)
+        x = held @ T[0, :3] + T[0, 3]
+        # Strips of 0.5 m along x as 16-bit numbers, which numpy sorts by radix; far ones wrap
+        # around and are told apart by place.
+        strip = np.floor(x / STRIP).astype(np.int64).astype(np.int16)
+        order = np.argsort(strip, kind="stable")
+        self._strip = strip[order]
+        self._x, self._y = x[order], (held @ T[1, :3] + T[1, 3])[order]
+        self._is_thing: Bool = (truth.thing[rows] >= 0)[order]
 
     def on_things(self, boxes: Boxes) -> tuple[Bool, Bool]:
         """Whether most obstacle returns inside each box come from things, and whether it has any.
@@ -70,15 +80,17 @@ class Returns:
             on_thing (k,), holds_returns (k,).
         """
         on_thing, holds = np.zeros(len(boxes), bool), np.zeros(len(boxes), bool)
-        for i, (center, size, yaw) in enumerate(zip(boxes.center, boxes.size, boxes.yaw, strict=True)):
-            half = size[:2] / 2 + BOX_MARGIN
-            radius = float(np.hypot(half[0], half[1]))
-            low, high = np.searchsorted(self._xy[:, 0], [center[0] - radius, center[0] + radius])
-            offset = self._xy[low:high] - center[:2]
-            near = np.flatnonzero(np.abs(offset[:, 1]) <= radius)
-            x, y = offset[near].T
-            c, s = np.cos(yaw), np.sin(yaw)
-            inside = (np.abs(c * x + s * y) <= half[0]) & (np.abs(c * y - s * x) <= half[1])
+        half = boxes.size[:, :2] / 2 + BOX_MARGIN
+        radius = np.hypot(half[:, 0], half[:, 1])
+        ends = np.floor((boxes.center[:, :1] + radius[:, None] * [-1, 1]) / STRIP).astype(np.int64)
+        first = np.searchsorted(self._strip, ends[:, 0].astype(np.int16), side="left")
+        last = np.searchsorted(self._strip, ends[:, 1].astype(np.int16), side="right")
+        for i, (low, high) in enumerate(zip(first.tolist(), last.tolist(), strict=True)):
+            x, y = self._x[low:high] - boxes.center[i, 0], self._y[low:high] - boxes.center[i, 1]
+            near = np.flatnonzero(np.abs(y) <= radius[i])
+            x, y = x[near], y[near]
+            c, s = np.cos(boxes.yaw[i]), np.sin(boxes.yaw[i])
+            inside = (np.abs(c * x + s * y) <= half[i, 0]) & (np.abs(c * y - s * x) <= half[i, 1])
             made_of = self._is_thing[low:high][near[inside]]
             holds[i] = len(made_of) > 0
             on_thing[i] = holds[i] and bool(2 * np.count_nonzero(made_of) > len(made_of))
