@@ -33,7 +33,7 @@ def _dots(image: U8, at: F64, colours: U8, size: int) -> None:
     for i in range(len(at)):
         if not (math.isfinite(at[i, 0]) and math.isfinite(at[i, 1])):
             continue
-        row, column = int(math.floor(at[i, 0])), int(math.floor(at[i, 1]))
+        row, column = math.floor(at[i, 0]), math.floor(at[i, 1])
         for r in range(max(row, 0), min(row + size, image.shape[0])):
             for c in range(max(column, 0), min(column + size, image.shape[1])):
                 for k in range(3):
@@ -50,8 +50,8 @@ def _strokes(image: U8, ends: F64, colours: U8, width: float, alpha: float) -> N
         length2 = dr * dr + dc * dc
         top, bottom = max(0.0, min(ar, br) - pad), min(image.shape[0] - 1.0, max(ar, br) + pad)
         left, right = max(0.0, min(ac, bc) - pad), min(image.shape[1] - 1.0, max(ac, bc) + pad)
-        for r in range(int(math.ceil(top)), int(math.floor(bottom)) + 1):
-            for c in range(int(math.ceil(left)), int(math.floor(right)) + 1):
+        for r in range(math.ceil(top), math.floor(bottom) + 1):
+            for c in range(math.ceil(left), math.floor(right) + 1):
                 s = ((r - ar) * dr + (c - ac) * dc) / length2 if length2 > 0 else 0.0
                 s = min(max(s, 0.0), 1.0)
                 distance = math.hypot(r - ar - s * dr, c - ac - s * dc)

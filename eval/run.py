@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from datmo.errors import ConfigError
 from eval import facts
+from eval.episode import episode, scans_to_play
 from eval.output import refuse_existing, unused, writing_folder
 from eval.report.recording import Recording, encode
 from eval.score import Metric
@@ -46,24 +46,14 @@ def play(
     Raises:
         ConfigError: `frames` is below 1.
     """
-    if frames is not None and frames < 1:
-        raise ConfigError(f"frames is {frames}; a run has at least 1; give a positive number")
-    if seed < 0:
-        raise ConfigError(f"seed is {seed}; seeds are not negative; give 0 or more")
-    total = min(frames or scenario.scans, scenario.scans)
+    total = scans_to_play(scenario, frames)
     env = make(scenario, ground=ground)
     recording = Recording(scenario, seed, total, ground)
     try:
-        _, info = env.reset(seed=seed)
-        done = False
-        for k in range(total):
+        for k, info in enumerate(episode(env, scenario, seed, total)):
             recording.add(info["frame"], info["truth"], stage_times(env, info))
             if on_step is not None:
                 on_step(k + 1, total, info)
-            if done or k + 1 == total:
-                break
-            _, _, terminated, truncated, info = env.step(_idle(scenario))
-            done = terminated or truncated
         recording.metrics, recording.detail = list(env.result()), env.detail()
     finally:
         env.close()
@@ -147,11 +137,6 @@ def metrics_csv(metrics: list[Metric]) -> str:
 def stage_times(env: Testbed, info: dict[str, Any]) -> dict[str, float]:
     """Milliseconds of traffic, cast and each stage of perception, in the order in which they run."""
     return {**env.lidar.milliseconds, **info["frame"].milliseconds}
-
-
-def _idle(scenario: Scenario) -> int:
-    """highway-env's DiscreteMetaAction 1 is IDLE; an autopilot takes only 0."""
-    return 1 if scenario.ego.control == "agent" else 0
 
 
 def _plain(value: Any) -> Any:

@@ -14,7 +14,9 @@ from eval.raster import Raster
 
 RADIUS, PIXELS, TAIL = 50.0, 800, 40
 SENSOR_HEIGHT = 1.73
-EGO_SHAPE = np.array([[2.3, 0.7], [2.6, 0.0], [2.3, -0.7], [1.9, -0.95], [-2.2, -0.95], [-2.2, 0.95], [1.9, 0.95]])
+EGO_SHAPE = np.array(
+    [[2.3, 0.7], [2.6, 0.0], [2.3, -0.7], [1.9, -0.95], [-2.2, -0.95], [-2.2, 0.95], [1.9, 0.95]]
+)
 
 Tails = Mapping[int, Array]
 
@@ -120,7 +122,9 @@ def _draw_cloud(raster: Raster, frame: Frame, truth: Truth | None) -> None:
     height = np.nan_to_num(height, nan=0.0, posinf=0.0, neginf=0.0)
     label = np.where(frame.clusters.label >= 0, 64 + frame.clusters.label % 64, 0).astype(np.uint8)
     kind = truth.kind if truth else None
-    codes = palette.point_codes(frame.ground.is_ground, height, label, kind, truth.is_ground if truth else None)
+    codes = palette.point_codes(
+        frame.ground.is_ground, height, label, kind, truth.is_ground if truth else None
+    )
     colours = palette.point_table()[codes]
     above = codes < 128
     raster.dots(points[~above, :2], colours[~above])

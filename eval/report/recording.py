@@ -17,7 +17,7 @@ from eval.score import Metric
 from eval.view import BirdsEye
 from scenarios.spec import Scenario
 
-PICTURES = 50
+PICTURES = 36
 QUALITY = 82
 KEPT = 1000.0
 

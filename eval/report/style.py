@@ -10,7 +10,16 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 INK, FAINT, GRID = "#1c1f24", "#7a808a", "#e4e6ea"
-SERIES: Sequence[str] = ("#2b6cb0", "#d9822b", "#2f855a", "#b83280", "#6b46c1", "#8a6d3b", "#0e7490", "#9b2c2c")
+SERIES: Sequence[str] = (
+    "#2b6cb0",
+    "#d9822b",
+    "#2f855a",
+    "#b83280",
+    "#6b46c1",
+    "#8a6d3b",
+    "#0e7490",
+    "#9b2c2c",
+)
 DPI = 160
 
 

@@ -39,7 +39,7 @@ def timeline(moments: list[Moment], rate: float) -> bytes:
         for value, begin, end in _runs(seen):
             if value >= 0:
                 span = (stamp[begin] - 0.5 / rate, (end - begin) / rate)
-                axes.broken_barh([span], (row + 0.02, 0.4), color=BANDS[Visibility(value)][1], linewidth=0)
+                axes.broken_barh([span], (row + 0.45, 0.36), color=BANDS[Visibility(value)][1], linewidth=0)
         _draw_tracks(axes, row, track, stamp, rate)
     axes.set_yticks(np.arange(len(names)) + 0.45, names)
     axes.set_ylim(max(len(names), 1), -0.15)
@@ -59,12 +59,12 @@ def _draw_tracks(axes: Axes, row: int, track: Array, stamp: Array, rate: float) 
             continue
         left, length = stamp[begin] - 0.5 / rate, (end - begin) / rate
         colour = np.array(track_colour(value)) / 255 * 0.9
-        axes.broken_barh([(left, length)], (row + 0.47, 0.34), facecolor=colour, edgecolor=INK, linewidth=0.5)
+        axes.broken_barh([(left, length)], (row + 0.05, 0.34), facecolor=colour, edgecolor=INK, linewidth=0.5)
         if value != last:
             style = {"fontsize": 6.5, "color": INK, "va": "center", "clip_on": True}
-            axes.text(left + 0.04, row + 0.645, str(value), **style)  # type: ignore[arg-type]
+            axes.text(left + 0.04, row + 0.225, str(value), **style)  # type: ignore[arg-type]
         last = value
-    axes.axhline(row + 0.92, color=FAINT, linewidth=0.2)
+    axes.axhline(row + 0.93, color=FAINT, linewidth=0.2)
 
 
 def _objects(moments: list[Moment]) -> list[tuple[int, int]]:

@@ -122,7 +122,7 @@ class StagedTestbed:
         self.seed, self.k = seed, 0
         return {}, self._info()
 
-    def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+    def step(self, _action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
         self.k += 1
         return {}, 0.5, False, self.k + 1 >= self.scenario.scans, self._info()
 

@@ -1,0 +1,52 @@
+"""datmo detect: boxes in a cloud file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from eval.commands import options as o
+
+
+def detect(
+    cloud: Annotated[Path, typer.Argument(metavar="FILE.bin", help="float32 x, y, z, intensity (KITTI).")],
+    out: Annotated[Path, typer.Option("--out", metavar="boxes.json", help="Where the boxes go.")],
+    ground: o.GroundMethod = None,
+    picture: o.Picture = None,
+    force: o.Force = False,
+) -> None:
+    """Find what stands on the ground in a lidar scan, as boxes.
+
+    Writes JSON: for each box center [m], size (length, width, height) [m] and yaw [rad] in the
+    frame of the sensor (x forward, y left, z up), score, kind and points.
+
+    \b
+    Examples:
+      datmo detect scan.bin --out boxes.json
+      datmo detect scan.bin --out boxes.json --picture boxes.png
+    """
+    from datmo.config import DatmoConfig
+    from datmo.pipeline import Datmo
+    from eval import clouds, console
+    from eval.output import refuse_existing, write_file
+    from eval.report.recording import encode
+    from eval.view import bird_eye
+
+    for path in (out, picture):
+        if path is not None:
+            refuse_existing(path, force)
+    read = clouds.read_bin(cloud)
+    config = DatmoConfig() if ground is None else DatmoConfig().with_ground(ground)
+    frame = Datmo(config).step(read.scan)
+    points = clouds.cluster_sizes(frame.boxes, read.scan, frame.clusters)
+    text = clouds.boxes_json(frame.boxes, points, cloud.name, read.dropped)
+    write_file(out, text.encode(), force)
+    if picture is not None:
+        write_file(picture, encode(bird_eye(frame), "PNG"), force)
+    screen = console.stdout()
+    screen.print(console.box_table(frame.boxes, points))
+    if read.dropped:
+        screen.print(f"{read.dropped} points with NaN or infinite coordinates were left out")
+    screen.print(f"{len(frame.boxes)} boxes: {out}", markup=False)

@@ -1,0 +1,48 @@
+"""datmo run: play a scenario, score it, report."""
+
+from __future__ import annotations
+
+import typer
+
+from eval.commands import options as o
+
+
+def run(
+    scenario: o.Scenario,
+    seed: o.Seed = 0,
+    frames: o.Frames = None,
+    ground: o.GroundMethod = None,
+    out: o.OutFolder = None,
+    set_: o.Settings = None,
+    force: o.Force = False,
+) -> None:
+    """Play a scenario through the whole loop, score every stage and write a report.
+
+    Leaves config.yaml, metrics.json, metrics.csv, report.html and figures/ in DIR
+    (runs/SCENARIO-seedN by default). Exit status 1: an expectation of the scenario is not met.
+
+    \b
+    Examples:
+      datmo run rough-crossing
+      datmo run rough-crossing --seed 7 --set terrain.grade=0.1 --out steep
+      datmo run steep/config.yaml --seed 7 --frames 20
+    """
+    from eval import console
+    from eval.run import choose_folder, play, write
+    from eval.verdict import judge
+    from scenarios.load import load
+
+    what = load(scenario, o.settings(set_))
+    folder = choose_folder(out, what, seed, force)
+    with console.progress(what.name, min(frames or what.scans, what.scans)) as tell:
+        recording = play(what, seed, frames, ground, console.on_step(tell))
+    write(recording, folder, force)
+    verdicts = judge(what.expect, recording.metrics)
+    screen = console.stdout()
+    screen.print(console.metric_table(recording.metrics, verdicts))
+    failed = [v.name for v in verdicts if not v.met]
+    if verdicts:
+        said = f"not met: {', '.join(failed)}" if failed else f"all {len(verdicts)} met"
+        screen.print(f"\nexpectations: {said}")
+    screen.print(f"report: {folder / 'report.html'}", markup=False)
+    raise typer.Exit(1 if failed else 0)

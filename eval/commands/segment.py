@@ -1,0 +1,55 @@
+"""datmo segment: ground of a cloud file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from eval.commands import options as o
+
+
+def segment(
+    cloud: Annotated[Path, typer.Argument(metavar="FILE.bin", help="float32 x, y, z, intensity (KITTI).")],
+    out: Annotated[Path, typer.Option("--out", metavar="FILE.label", help="Where the labels go.")],
+    method: Annotated[str, typer.Option("--method", help="Ground method.")] = "z",
+    picture: o.Picture = None,
+    force: o.Force = False,
+) -> None:
+    """Tell ground from the rest in a lidar scan.
+
+    Writes one uint32 for each point of the file, as SemanticKITTI does: 40 (road) for ground, 99
+    (other-object) for what stands on it, 0 (unlabelled) for points with NaN, which are left out
+    and counted.
+
+    \b
+    Examples:
+      datmo segment scan.bin --out scan.label
+      datmo segment scan.bin --method z --out scan.label --picture ground.png
+    """
+    import numpy as np
+
+    from datmo.config import DatmoConfig
+    from datmo.pipeline import Datmo
+    from eval import clouds, console
+    from eval.output import refuse_existing, write_file
+    from eval.report.recording import encode
+    from eval.view import bird_eye
+
+    for path in (out, picture):
+        if path is not None:
+            refuse_existing(path, force)
+    read = clouds.read_bin(cloud)
+    frame = Datmo(DatmoConfig().with_ground(method)).step(read.scan)
+    label = clouds.labels(frame.ground.is_ground, read.kept)
+    write_file(out, clouds.label_bytes(label), force)
+    if picture is not None:
+        write_file(picture, encode(bird_eye(frame), "PNG"), force)
+    rows = [("ground", clouds.ROAD), ("not ground", clouds.OTHER_OBJECT), ("dropped", clouds.UNLABELLED)]
+    counts = [(name, code, int(np.count_nonzero(label == code))) for name, code in rows]
+    screen = console.stdout()
+    screen.print(console.count_table(counts))
+    if read.dropped:
+        screen.print(f"{read.dropped} points with NaN or infinite coordinates have label 0")
+    screen.print(f"labels: {out}", markup=False)

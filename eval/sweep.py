@@ -1,0 +1,196 @@
+"""A sweep: one scenario over the product of some of its values, as one table and one figure."""
+
+from __future__ import annotations
+
+import csv
+import io
+import itertools
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from datmo.errors import ConfigError
+from eval.episode import episode, scans_to_play
+from eval.output import writing_folder
+from eval.pool import run_all
+from eval.score import Metric
+from eval.testbed import make_testbed
+from eval.verdict import say_value
+from scenarios.expect import UNITS
+from scenarios.load import dump, load
+from scenarios.spec import Scenario
+
+SHOWN = (
+    "ground.f1",
+    "ground.leak",
+    "ground.height_rmse",
+    "detection.recall",
+    "tracking.hota",
+    "tracking.gospa",
+    "tracking.id_switches",
+    "recovery.rate",
+)
+"""The scores of the printed table and the figure; the CSV holds every one but the times."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """One episode to score."""
+
+    scenario: Scenario
+    seed: int
+    frames: int | None
+    ground: str | None
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """What was swept and what came of it.
+
+    Attributes:
+        keys: of the scenario. points: the values of each combination, in the order of the product.
+        seeds: played for each combination.
+        scores: for each combination, for each seed, metric -> value (None: nothing to measure).
+    """
+
+    keys: tuple[str, ...]
+    points: list[tuple[str, ...]]
+    seeds: list[int]
+    scores: list[list[dict[str, float | None]]]
+
+    def mean(self, row: int, metric: str) -> float | None:
+        """Mean over the seeds that measured something."""
+        values = [s[metric] for s in self.scores[row]]
+        known = [v for v in values if v is not None]
+        return float(np.mean(known)) if known else None
+
+
+def sweep(
+    scenario: str | Path,
+    over: Mapping[str, Sequence[str]],
+    seeds: Sequence[int] = (0,),
+    frames: int | None = None,
+    ground: str | None = None,
+    settings: Mapping[str, str] | None = None,
+    workers: int = 1,
+    on_done: Callable[[int], None] | None = None,
+) -> Sweep:
+    """Play the scenario at every combination of values and seeds.
+
+    Every combination is validated before the first is played.
+
+    Args:
+        scenario: a name or a file. over: key -> values as `--set` takes them.
+        seeds: of the episodes. frames: scans an episode. ground: method. settings: for all.
+        workers: processes; the result does not depend on them. on_done: told how many are done.
+
+    Raises:
+        ScenarioError: a key or a value does not fit the scenario.
+    """
+    keys = tuple(over)
+    points = list(itertools.product(*over.values()))
+    worlds = [load(scenario, {**(settings or {}), **dict(zip(keys, p, strict=True))}) for p in points]
+    jobs = [Job(world, seed, frames, ground) for world in worlds for seed in seeds]
+    results = run_all(score, jobs, workers, on_done)
+    rows = [results[i : i + len(seeds)] for i in range(0, len(results), len(seeds))]
+    return Sweep(keys, points, list(seeds), rows)
+
+
+def score(job: Job) -> dict[str, float | None]:
+    """Play one episode; every metric but the times, which depend on who else is working."""
+    env = make_testbed(job.scenario, ground=job.ground)
+    try:
+        for _ in episode(env, job.scenario, job.seed, scans_to_play(job.scenario, job.frames)):
+            pass
+        metrics: list[Metric] = list(env.result())
+    finally:
+        env.close()
+    return {m.name: m.value for m in metrics if not m.name.startswith("speed.")}
+
+
+def parse_over(pairs: Sequence[str]) -> dict[str, list[str]]:
+    """KEY=V1,V2,... pairs as key -> values; commas inside brackets do not part values.
+
+    Raises:
+        ConfigError: no pair, a pair without "=", an empty value, or a key given twice.
+    """
+    found: dict[str, list[str]] = {}
+    for pair in pairs:
+        key, sign, text = pair.partition("=")
+        key, values = key.strip(), [v.strip() for v in _split(text)]
+        if not sign or not key or not all(values):
+            raise ConfigError(f"--over {pair!r} is no KEY=V1,V2; write e.g. --over terrain.grade=0,0.06,0.12")
+        if key in found:
+            raise ConfigError(f"--over {key} is given twice; join its values: --over {key}=V1,V2")
+        if len(set(values)) < len(values):
+            raise ConfigError(f"--over {pair!r} names a value twice; name each once")
+        found[key] = values
+    if not found:
+        raise ConfigError("nothing to sweep over; give at least one --over KEY=V1,V2")
+    return found
+
+
+def parse_seeds(text: str) -> list[int]:
+    """ "3" is one seed, "0,4,7" are three, "0..4" are five.
+
+    Raises:
+        ConfigError: anything else.
+    """
+    try:
+        first, dots, last = text.partition("..")
+        seeds = list(range(int(first), int(last) + 1)) if dots else [int(s) for s in text.split(",")]
+    except ValueError:
+        seeds = []
+    if not seeds or min(seeds) < 0 or len(set(seeds)) < len(seeds):
+        raise ConfigError(f"--seeds {text!r} are no seeds; write one (3), a list (0,4,7) or a range (0..4)")
+    return seeds
+
+
+def _split(text: str) -> list[str]:
+    parts, depth = [""], 0
+    for letter in text:
+        depth += (letter in "[{(") - (letter in ")}]")
+        if letter == "," and depth == 0:
+            parts.append("")
+        else:
+            parts[-1] += letter
+    return parts
+
+
+def to_csv(made: Sweep) -> str:
+    """One row a combination and seed, one column a metric; empty where there was nothing to measure."""
+    names = [name for name in UNITS if not name.startswith("speed.")]
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow([*made.keys, "seed", *names])
+    for point, scores in zip(made.points, made.scores, strict=True):
+        for seed, values in zip(made.seeds, scores, strict=True):
+            numbers = [values.get(name) for name in names]
+            rows.writerow([*point, seed, *("" if v is None else repr(float(v)) for v in numbers)])
+    return text.getvalue()
+
+
+def to_markdown(made: Sweep) -> str:
+    """The table of `SHOWN`, means over the seeds."""
+    head = [*made.keys, *(f"{m} [{UNITS[m]}]" if UNITS[m] not in ("1", "count") else m for m in SHOWN)]
+    lines = [head, ["---"] * len(made.keys) + ["---:"] * len(SHOWN)]
+    for row, point in enumerate(made.points):
+        lines.append([*point, *(say_value(made.mean(row, m)) for m in SHOWN)])
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"
+
+
+def write(made: Sweep, scenario: Scenario, folder: Path, force: bool = False) -> None:
+    """Write scores.csv, table.md, figure.png and config.yaml into `folder`.
+
+    Raises:
+        OutputError: `folder` exists and `force` is not set.
+    """
+    from eval.report.sweep_figure import sweep_figure
+
+    with writing_folder(folder, force) as beside:
+        (beside / "scores.csv").write_text(to_csv(made), encoding="utf-8")
+        (beside / "table.md").write_text(to_markdown(made), encoding="utf-8")
+        (beside / "figure.png").write_bytes(sweep_figure(made))
+        (beside / "config.yaml").write_text(dump(scenario), encoding="utf-8")
