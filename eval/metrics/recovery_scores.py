@@ -21,7 +21,8 @@ EPS = 1e-6
 def recovery_scores(events: Sequence[Event], objects: int) -> dict[str, float | None]:
     """The named scores, ghosts apart.
 
-    recovery.latency counts any id. recovery.position_error is the owner's after 1 s hidden.
+    All are over the events that have an owner; recovery.events is their number. recovery.latency
+    counts any id. recovery.position_error is the owner's after 1 s hidden.
 
     Args:
         events: those of a run.
@@ -29,11 +30,11 @@ def recovery_scores(events: Sequence[Event], objects: int) -> dict[str, float | 
     """
     owned = [e for e in events if e.owner is not None]
     return {
-        "recovery.events": float(len(events)) if objects else None,
+        "recovery.events": float(len(owned)) if objects else None,
         "recovery.rate": share(owned, "recovered"),
         "recovery.wrong_rate": share(owned, "wrong"),
-        "recovery.latency": mean([e.latency for e in events]),
-        "recovery.position_error": coast_errors(events, 1.0)["error"],
+        "recovery.latency": mean([e.latency for e in owned]),
+        "recovery.position_error": coast_errors(owned, 1.0)["error"],
     }
 
 
@@ -87,12 +88,13 @@ def summary(events: Sequence[Event], seeds: Sequence[Hashable]) -> dict[str, Any
         interval = bootstrap_share([e.outcome == outcome for e in owned], groups)
         shares[outcome] = {"share": share(owned, outcome), "interval": interval}
     return {
-        "events": len(events),
+        "events": len(owned),
         "without_owner": len(events) - len(owned),
         "outcomes": shares,
         "rate_all": share(events, "recovered"),
         "stolen": ratio(sum(e.stolen for e in owned), len(owned)),
-        "latency": spread([e.latency for e in events]),
+        "latency": spread([e.latency for e in owned]),
+        "latency_all": spread([e.latency for e in events]),
         "owner_latency": spread([e.owner_latency for e in owned]),
         "hidden": {str(after): coast_errors(owned, after) for after in COAST_TIMES},
     }

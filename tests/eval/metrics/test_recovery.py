@@ -221,10 +221,11 @@ def test_shares_sum_to_one_and_rate_all_counts_every_event(make: Any) -> None:
     ]
     events = [only(make, s) for s in stories]
     scores, detail = recovery_scores(events, 1), recovery_detail(events, 2, ["a", "a", "b", "b"])
-    assert scores["recovery.events"] == 4
+    assert scores["recovery.events"] == detail["events"] == 3
     assert scores["recovery.rate"] == pytest.approx(1 / 3)
     assert scores["recovery.wrong_rate"] == 0.0
-    assert scores["recovery.latency"] == pytest.approx((0 + 3 + 0.2 + 3) / 4)
+    assert scores["recovery.latency"] == pytest.approx((0 + 3 + 0.2) / 3)
+    assert detail["latency_all"]["mean"] == pytest.approx((0 + 3 + 0.2 + 3) / 4)
     assert sum(v["share"] for v in detail["outcomes"].values()) == pytest.approx(1)
     assert (detail["rate_all"], detail["without_owner"], detail["censored"]) == (0.25, 1, 2)
     low, high = detail["outcomes"]["recovered"]["interval"]
