@@ -93,7 +93,8 @@ class Testbed(gym.Wrapper[Observation, Any, Observation, Any], EzPickle):
         self._frame: Frame = self._datmo.step(info["scan"])
         self._truth: Truth = info["truth"]
         start = perf_counter()
-        metrics = self._scorer.add(self._frame, self._truth, relief, self._datmo.tracker.nis)
+        nis = {track: value for track, (value, _) in self._datmo.tracker.nis.items()}
+        metrics = self._scorer.add(self._frame, self._truth, relief, nis)
         self._view.follow(self._frame)
         self._score_ms = (perf_counter() - start) * 1e3
         info.update(relief=relief, frame=self._frame, metrics=metrics)
