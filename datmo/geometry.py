@@ -17,7 +17,11 @@ def wrap_angle(angle: Array | float) -> F64:
 
 def transform(T_a_b: F64, points_b: Array) -> F64:
     """Points (n, 3) in b expressed in a, (n, 3) float64."""
-    return np.asarray(np.asarray(points_b, float) @ T_a_b[:3, :3].T + T_a_b[:3, 3])
+    x, y, z = np.asarray(points_b, float).T
+    points_a = np.empty((len(x), 3))
+    for i in range(3):  # elementwise: the bytes of a BLAS product may depend on its threads
+        points_a[:, i] = T_a_b[i, 0] * x + T_a_b[i, 1] * y + T_a_b[i, 2] * z + T_a_b[i, 3]
+    return points_a
 
 
 def inverse(T_a_b: F64) -> F64:

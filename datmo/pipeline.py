@@ -69,6 +69,6 @@ class Stopwatch:
 
 def ground_below(scan: Scan, ground: Ground) -> F64:
     """World height (n,) [m] of the ground where the line through each point along z meets it."""
-    R, t = scan.T_world_sensor[:3, :3], scan.T_world_sensor[:3, 3]
-    xy = scan.points[:, :2].astype(float)
-    return np.asarray(xy @ R[2, :2] + ground.height * R[2, 2] + t[2])
+    T = scan.T_world_sensor[2]
+    x, y = scan.points[:, 0].astype(float), scan.points[:, 1].astype(float)
+    return np.asarray(T[0] * x + T[1] * y + T[2] * ground.height + T[3])
