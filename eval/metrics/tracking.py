@@ -94,18 +94,18 @@ def hota(frames: Similarities) -> dict[str, float | None]:
     if g + t == 0:
         return dict.fromkeys(("hota", "deta", "assa", "loca"))
     alignment, objects, tracks = _alignment(scans, g, t)
-    together = np.zeros((len(ALPHAS), g, t))
-    overlap = np.zeros(len(ALPHAS))
+    found: list[tuple[I64, I64, F64]] = []
     for a, b, similarity in scans:
         row, column = linear_sum_assignment(-alignment[np.ix_(a, b)] * similarity)
-        shared = similarity[row, column]
-        for i, alpha in enumerate(ALPHAS):
-            kept = shared >= alpha - EPS
-            together[i, a[row[kept]], b[column[kept]]] += 1
-            overlap[i] += shared[kept].sum()
-    hits = together.sum((1, 2))
-    union = np.maximum(1, objects[:, None] + tracks - together)
-    assa = (together**2 / union).sum((1, 2)) / np.maximum(1, hits)
+        found.append((a[row], b[column], similarity[row, column]))
+    object_, track, shared = (np.concatenate(column) for column in zip(*found, strict=True))
+    hits, assa, overlap = np.zeros((3, len(ALPHAS)))
+    for i, alpha in enumerate(ALPHAS):
+        kept = shared >= alpha - EPS
+        pair, together = np.unique(object_[kept] * max(t, 1) + track[kept], return_counts=True)
+        union = objects[pair // max(t, 1)] + tracks[pair % max(t, 1)] - together
+        hits[i], overlap[i] = kept.sum(), shared[kept].sum()
+        assa[i] = np.sum(together**2 / union) / max(1, hits[i])
     deta = hits / np.maximum(1, objects.sum() + tracks.sum() - hits)
     loca = np.maximum(1e-10, overlap) / np.maximum(1e-10, hits)
     return {
