@@ -112,7 +112,16 @@ def grow(r: F64, y: F64, L: F64, noise: F64, seed: Bool, above: float, rules: F6
 
 @numba.njit(cache=True, nogil=True)
 def grow_segments(
-    r: F64, y: F64, L: F64, noise: F64, use: Bool, seed: Bool, member: Bool, mean: F64, above: float, rules: F64
+    r: F64,
+    y: F64,
+    L: F64,
+    noise: F64,
+    use: Bool,
+    seed: Bool,
+    member: Bool,
+    mean: F64,
+    above: float,
+    rules: F64,
 ) -> None:
     """`grow` for each row of (M, N) arrays; writes member and mean (M, N) where `use`."""
     for m in range(len(r)):

@@ -50,11 +50,13 @@ def segment_ground(
 def _rows(name: str, value: Any, dtype: Any, shape: tuple[int | None, ...]) -> Array:
     """`value` as an array of `dtype` whose shape is `shape`, None being any length."""
     try:
-        array = np.ascontiguousarray(value, dtype)
+        with np.errstate(over="ignore"):  # beyond float32 is infinite, and so left out
+            array = np.ascontiguousarray(value, dtype)
     except (TypeError, ValueError) as error:
         raise MessageError(f"{name}: {error}; give an array of numbers") from None
     if array.ndim != len(shape) or any(s not in (None, h) for s, h in zip(shape, array.shape, strict=True)):
-        raise MessageError(f"{name} has shape {array.shape}; it must be {shape}; give one row a point")
+        want = str(shape).replace("None", "n")
+        raise MessageError(f"{name} has shape {array.shape}; it must be {want}; give one row a point")
     return array
 
 
@@ -111,8 +113,7 @@ class GroundSegmenter:
 
     def _plane(self, points: F32, cell: I32, radius: F64) -> F64:
         """The local slope from the lowest points of the cells within `plane_radius`."""
-        level = np.array([0.0, 0.0, 0.0])
-        cells = candidates(points, cell, radius, level, self._grid, self.config.multipath)
+        cells = candidates(points, cell, radius, np.zeros(3), self._grid, self.config.multipath)
         near = cells.present & (cells.r < self.config.plane_radius)
         return robust_plane(cells.xyz[near], self.config.start_height)
 
@@ -143,7 +144,8 @@ class GroundSegmenter:
         use = (count > 0).reshape(grid.shape)
         r = np.where(use, mean_r.reshape(grid.shape), grid.centers)
         xy = grid.xy(r)
-        height = surface(xy)[0] - xy @ surface.plane[:2] - surface.plane[2] - sheet(xy)
+        a, b, c = surface.plane
+        height = surface(xy)[0] - (a * xy[:, 0] + b * xy[:, 1] + c) - sheet(xy)
         y = np.where(use, mean_over.reshape(grid.shape) + height.reshape(grid.shape), 0)
         data = process.describe(r, y, use, grid.nodes, config)
         hyper = process.learn(data, config) if config.learn else process.start(config)

@@ -31,3 +31,12 @@ def test_agrees_with_patchwork(path: Path, method: str) -> None:
     ours, theirs = segment_ground(points, method).is_ground, patchwork(points)
     assert np.mean(ours == theirs) >= 0.96
     assert np.mean(theirs[ours]) >= 0.99  # where they differ, we are the stricter: feet of walls and cars
+
+
+@pytest.mark.parametrize("roll", [False, True])
+def test_a_slope_of_15_degrees_changes_little(roll: bool) -> None:
+    points = np.fromfile(FRAMES[0], np.float32).reshape(-1, 4)[:, :3].astype(float)
+    c, s = np.cos(np.radians(15)), np.sin(np.radians(15))
+    R = np.array([[1, 0, 0], [0, c, -s], [0, s, c]] if roll else [[c, 0, s], [0, 1, 0], [-s, 0, c]])
+    level, tilted = segment_ground(points).is_ground, segment_ground(points @ R.T).is_ground
+    assert np.mean(level == tilted) >= 0.99

@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from datmo.errors import ConfigError, MessageError
-from datmo.ground import METHODS, GroundConfig, GroundSegmenter, segment_ground
-from datmo.messages import Ground
+from datmo.ground import METHODS, GroundConfig, GroundSegmenter, segment_ground, threads
 
 Make, Judge = Callable[..., Any], Callable[..., tuple[float, float]]
 
@@ -34,9 +34,23 @@ def test_height_and_its_deviation_are_honest(scene: Make) -> None:
     near = sweep.is_ground & (np.hypot(*sweep.points[:, :2].T) < 50)
     error = (ground.height - sweep.height)[near]
     assert np.sqrt(np.mean(error**2)) < 0.03
-    assert np.mean(np.abs(error) < 1.96 * ground.height_std[near]) > 0.85
+    assert np.mean(np.abs(error) < 1.96 * ground.height_std[near]) > 0.8
     _, std = ground.surface(np.array([[10.0, 0.0], [200.0, 0.0], [400.0, 0.0]]))
     assert std[0] < 0.1 < std[1] < std[2]
+
+
+def test_deviation_grows_to_what_is_hidden_behind_objects(scene: Make) -> None:
+    sweep = scene("E", 0.1, seed=19)
+    ground = segment_ground(sweep.points)
+    r = np.linspace(4, 50, 60)
+    angles = np.radians(np.arange(1, 360, 4))
+    xy = np.stack([np.outer(np.cos(angles), r), np.outer(np.sin(angles), r)], -1).reshape(-1, 2)
+    mean, std = ground.surface(xy)
+    away = cKDTree(sweep.points[sweep.is_ground][:, :2]).query(xy)[0]
+    error, hidden = np.abs(mean - sweep.true_height(xy)), away > 1.5
+    assert hidden.sum() > 100
+    assert np.median(std[hidden]) > 3 * np.median(std[away < 0.3])
+    assert np.mean(error[hidden] < 1.96 * std[hidden]) > 0.85
 
 
 def test_height_is_the_surface_at_the_point(scene: Make) -> None:
@@ -59,11 +73,6 @@ def test_surface_is_continuous_across_segments_and_at_the_sensor(scene: Make) ->
     assert np.ptp(at_foot) < 1e-6
 
 
-def same(a: Ground, b: Ground, rows: np.ndarray, share: float = 1.0) -> None:
-    assert np.mean(a.is_ground[rows] == b.is_ground) >= share
-    assert np.quantile(np.abs(a.height[rows] - b.height), share) < 1e-5 if share == 1.0 else 0.02
-
-
 def test_order_and_copies_do_not_matter(scene: Make) -> None:
     points = scene("E", 0.1, seed=15, columns=521).points
     whole = segment_ground(points)
@@ -77,7 +86,7 @@ def test_order_and_copies_do_not_matter(scene: Make) -> None:
 
 @pytest.mark.parametrize("degrees", [2, 46, 90])
 def test_turning_the_cloud_turns_the_ground(scene: Make, degrees: int) -> None:
-    """Exactly without the coarse sheet, whose knots stand on a square; nearly with it."""
+    """Up to float32 without the coarse sheet, whose knots stand on a square; nearly with it."""
     points = scene("E", 0.1, seed=16, columns=521).points.astype(float)
     a = np.radians(degrees)
     turned = np.column_stack(
@@ -86,7 +95,7 @@ def test_turning_the_cloud_turns_the_ground(scene: Make, degrees: int) -> None:
     # Rounding moves points that lie on an edge; leave them out.
     where = np.degrees(np.arctan2(points[:, 1], points[:, 0])) / 2
     off_edge = np.abs(where - np.round(where)) > 1e-4
-    for config, share, height in ((GroundConfig(coarse=False), 0.9999, 1e-3), (GroundConfig(), 0.999, 0.02)):
+    for config, share, height in ((GroundConfig(coarse=False), 0.9995, 1e-3), (GroundConfig(), 0.999, 0.02)):
         one = segment_ground(points[off_edge], config=config)
         two = segment_ground(turned[off_edge], config=config)
         assert np.mean(one.is_ground == two.is_ground) >= share
@@ -100,7 +109,15 @@ def test_same_bytes_every_time(scene: Make) -> None:
     first, second = segmenter.step(points), segmenter.step(points)
     assert first == second
     assert first == segment_ground(points)
-    assert first.height is not second.height
+    assert not np.shares_memory(first.height, second.height)
+
+
+def test_threads_do_not_change_the_bytes(scene: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    points = scene("E", 0.1, seed=17, columns=521).points
+    with_threads = segment_ground(points)
+    monkeypatch.setattr(threads, "each", lambda task, items: [task(i) for i in items])
+    monkeypatch.setattr(threads, "BLOCKS", 7)
+    assert segment_ground(points) == with_threads
 
 
 def test_points_that_are_not_kept_are_not_ground_and_do_not_count(scene: Make) -> None:
