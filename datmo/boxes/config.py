@@ -24,7 +24,7 @@ class FilterConfig(BaseModel):
 
     length: Range = Field((0.15, 17.0), description="[m]")
     width: Range = Field((0.0, 3.5), description="[m]")
-    height: Range = Field((0.6, 4.5), description="top above the ground [m]; a child of one year has 0.75")
+    height: Range = Field((0.5, 4.5), description="top above the ground [m]; a child of one year has 0.75")
     volume: Range = Field((0.0, 180.0), description="[m³]; 16.5 x 2.55 x 4.0 and a little")
     area: Range = Field((0.0, 50.0), description="seen from above [m²]; 16.5 x 2.55 and a little")
     ratio: Range = Field((1.0, 15.0), description="length over width, for boxes longer than ratio_above [1]")

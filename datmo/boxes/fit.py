@@ -47,14 +47,22 @@ def fit_boxes(
     config = config or BoxConfig()
     points, ground = np.asarray(points_world, float), np.asarray(ground_z, float)
     _check(points, clusters, ground)
+    boxes, number = _fit(points, ground, clusters, np.asarray(sensor_xy, float), config)
+    passed, rejections = apply_rules(boxes.size, number, config.filter)
+    return boxes.select(passed), rejections
+
+
+def _fit(
+    points: F64, ground: F64, clusters: Clusters, sensor_xy: F64, config: BoxConfig
+) -> tuple[Boxes, I64]:
+    """The box and the number of points of each cluster, whatever they are."""
     rows, starts = group(clusters.label, clusters.count)
     number = np.diff(starts)
     xy = np.ascontiguousarray(points[rows, :2])
-    angle = _angles(xy, starts, np.asarray(sensor_xy, float), config)
+    angle = _angles(xy, starts, sensor_xy, config)
     center, length_width, yaw = _rectangles(extents(xy, starts, angle), angle)
     base, top = _heights(points[rows, 2], ground[rows], starts)
     size = np.column_stack([length_width, np.maximum(top - base, 0)])
-    passed, rejections = apply_rules(size, number, config.filter)
     boxes = Boxes(
         center=np.column_stack([center, base + size[:, 2] / 2]),
         size=size,
@@ -62,7 +70,7 @@ def fit_boxes(
         score=(number / (number + config.half_points)).astype(np.float32),
         kind=guess_kinds(size, config.kinds),
     )
-    return boxes.select(passed), rejections
+    return boxes, number
 
 
 def _angles(xy: F64, starts: I64, sensor_xy: F64, config: BoxConfig) -> F64:
@@ -101,10 +109,10 @@ def _check(points: F64, clusters: Clusters, ground: F64) -> None:
             f"fit_boxes was given points {points.shape} and ground_z {ground.shape} for {n} labels; "
             "they must be (n, 3) and (n,); give one row a point"
         )
-    held = clusters.label >= 0
-    bad = held & ~(np.isfinite(points).all(1) & np.isfinite(ground))
+    held = np.flatnonzero(clusters.label >= 0)
+    bad = ~np.isfinite(points[held].sum(1) + ground[held])
     if bad.any():
-        row = int(np.argmax(bad))
+        row = int(held[np.argmax(bad)])
         raise MessageError(
             f"fit_boxes: point {row} is {points[row]} on ground {ground[row]}; a point with a label must be "
             "finite; give it the label -1"

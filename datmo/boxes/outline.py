@@ -59,6 +59,8 @@ def _outline(points: F64, sensor_xy: F64, step: float, outline: F64) -> int:
     # Azimuth is counted from the middle of the cluster, so that it does not wrap within it.
     ahead_x = (points[:, 0].min() + points[:, 0].max()) / 2 - sensor_xy[0]
     ahead_y = (points[:, 1].min() + points[:, 1].max()) / 2 - sensor_xy[1]
+    if ahead_x == 0 and ahead_y == 0:
+        ahead_x = 1.0
     dx, dy = points[:, 0] - sensor_xy[0], points[:, 1] - sensor_xy[1]
     azimuth = np.arctan2(ahead_x * dy - ahead_y * dx, ahead_x * dx + ahead_y * dy)
     low = azimuth.min()

@@ -36,7 +36,10 @@ class PolarGrid:
         return int(self.columns.sum())
 
     def locate(self, points: Array, taken: Bool) -> I32:
-        """Flat index of the cell of each point (n, 3) [m, sensor], -1 where not `taken` or outside."""
+        """Flat index of the cell of each point (n, 3) [m, sensor], -1 where it has none.
+
+        Points that are not `taken`, out of range or not finite have none.
+        """
         return np.asarray(_locate(points, taken, self.edges, self.columns, self.first))
 
 
@@ -58,7 +61,7 @@ def _locate(points: Array, taken: Bool, edges: F64, columns: I64, first: I64) ->
     n = len(points)
     flat = np.full(n, -1, np.int32)
     for i in range(n):
-        if not taken[i]:
+        if not (taken[i] and np.isfinite(points[i, 2])):
             continue
         x, y = float(points[i, 0]), float(points[i, 1])
         r = np.sqrt(x * x + y * y)

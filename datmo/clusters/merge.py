@@ -10,6 +10,8 @@ from datmo.clusters.config import MergeConfig
 from datmo.errors import MessageError
 from datmo.messages import Boxes, Clusters
 
+FAR = 1e9  # [m]
+
 
 def merge_clusters(
     points_world: Array, clusters: Clusters, predicted: Boxes, config: MergeConfig | None = None
@@ -42,31 +44,34 @@ def merge_clusters(
         )
     if len(predicted) == 0 or clusters.count < 2:
         return clusters
-    extent = footprints(points_world, clusters, predicted, config.pad)
-    half = np.stack(
-        [-predicted.size[:, 0], predicted.size[:, 0], -predicted.size[:, 1], predicted.size[:, 1]]
+    return _relabel(
+        clusters, _targets(footprints(points_world, clusters, predicted, config.pad), predicted, config)
     )
-    half = half.T[:, None, :] / 2
-    overlap = _area(_intersection(extent, half))
-    smaller = np.minimum(_area(extent), _area(half))
-    share = overlap / np.maximum(smaller, 1e-9)
+
+
+def _targets(extent: F64, predicted: Boxes, config: MergeConfig) -> Array:
+    """The label (c,) that each cluster takes, from the footprints (k, c, 4) along the k boxes."""
+    half = predicted.size[:, [0, 0, 1, 1]] / 2 * np.array([-1, 1, -1, 1])
+    overlap = _area(_intersection(extent, half[:, None]))
+    share = overlap / np.maximum(np.minimum(_area(extent), _area(half)[:, None]), 1e-9)
     owner = np.argmax(share, axis=0)
-    target = np.arange(clusters.count)
+    target = np.arange(extent.shape[1])
     for box in range(len(predicted)):
         members = np.flatnonzero((owner == box) & (share[box] > config.share))
         members = members[np.argsort(-overlap[box, members], kind="stable")]
         joined = _join(extent[box], members, predicted.size[box], config)
         target[joined] = min(joined, default=0)
-    return _relabel(clusters, target)
+    return target
 
 
 def footprints(points_world: Array, clusters: Clusters, boxes: Boxes, pad: float) -> F64:
     """Extent (k, c, 4) of each cluster along each box's axes about its centre: x0, x1, y0, y1 [m].
 
-    No extent is less than `pad`. Clusters without a point have an extent at infinity.
+    No extent is less than `pad`. A cluster that cannot touch the box, or has no point, lies far away.
     """
+    reach = np.hypot(boxes.size[:, 0], boxes.size[:, 1]) / 2 + pad
     raw = np.asarray(
-        _extents(np.asarray(points_world), clusters.label, clusters.count, boxes.center[:, :2], boxes.yaw)
+        _extents(np.asarray(points_world), clusters.label, clusters.count, boxes.center, boxes.yaw, reach)
     )
     for low, high in ((0, 1), (2, 3)):
         short = np.maximum(pad - (raw[..., high] - raw[..., low]), 0) / 2
@@ -76,26 +81,33 @@ def footprints(points_world: Array, clusters: Clusters, boxes: Boxes, pad: float
 
 
 @njit(cache=True, nogil=True)
-def _extents(points: Array, label: I32, count: int, centers: F64, yaws: F64) -> F64:
+def _extents(points: Array, label: I32, count: int, centers: F64, yaws: F64, reach: F64) -> F64:
+    about = np.empty((count, 4))  # along the world's axes
+    about[:, 0::2] = np.inf
+    about[:, 1::2] = -np.inf
+    for i in range(len(points)):
+        if label[i] >= 0:
+            _widen(about[label[i]], points[i, 0], points[i, 1])
     extent = np.empty((len(centers), count, 4))
+    near = np.empty(count, np.bool_)
     for b in range(len(centers)):
-        c, s = np.cos(yaws[b]), np.sin(yaws[b])
-        extent[b, :, 0::2] = np.inf
-        extent[b, :, 1::2] = -np.inf
-        for i in range(len(points)):
-            k = label[i]
-            if k < 0:
-                continue
-            dx, dy = points[i, 0] - centers[b, 0], points[i, 1] - centers[b, 1]
-            x, y = c * dx + s * dy, c * dy - s * dx
-            extent[b, k, 0] = min(extent[b, k, 0], x)
-            extent[b, k, 1] = max(extent[b, k, 1], x)
-            extent[b, k, 2] = min(extent[b, k, 2], y)
-            extent[b, k, 3] = max(extent[b, k, 3], y)
+        x, y, c, s = centers[b, 0], centers[b, 1], np.cos(yaws[b]), np.sin(yaws[b])
         for k in range(count):
-            if extent[b, k, 0] > extent[b, k, 1]:
-                extent[b, k] = 1e9
+            dx, dy = max(about[k, 0] - x, x - about[k, 1]), max(about[k, 2] - y, y - about[k, 3])
+            near[k] = max(dx, dy) <= reach[b]
+            extent[b, k, 0::2] = np.inf if near[k] else FAR
+            extent[b, k, 1::2] = -np.inf if near[k] else FAR
+        for i in range(len(points)):
+            if label[i] >= 0 and near[label[i]]:
+                dx, dy = points[i, 0] - x, points[i, 1] - y
+                _widen(extent[b, label[i]], c * dx + s * dy, c * dy - s * dx)
     return extent
+
+
+@njit(cache=True, nogil=True)
+def _widen(extent: F64, x: float, y: float) -> None:
+    extent[0], extent[1] = min(extent[0], x), max(extent[1], x)
+    extent[2], extent[3] = min(extent[2], y), max(extent[3], y)
 
 
 def _join(extent: F64, members: Array, size: F64, config: MergeConfig) -> list[int]:

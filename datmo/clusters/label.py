@@ -40,7 +40,7 @@ def cluster(
     config = config or ClusterConfig()
     points, height_above = np.asarray(points), np.asarray(height_above)
     _check(points, height_above, elevated)
-    taken = elevated & (height_above < config.max_height) & np.isfinite(points).all(1)
+    taken = elevated & (height_above < config.max_height)
     linking = height_above >= config.min_height
     components = _polar if config.grid == "polar" else _plain
     label = components(points, taken, linking, config)
@@ -59,7 +59,9 @@ def _polar(points: Array, taken: Bool, linking: Bool, config: ClusterConfig) -> 
 def _plain(points: Array, taken: Bool, linking: Bool, config: ClusterConfig) -> I32:
     label = np.full(len(points), -1, np.int32)
     half = int(np.ceil(config.max_range / config.cell))
-    rows = np.flatnonzero(taken & (np.abs(points[:, :2]) < config.max_range).all(1))
+    rows = np.flatnonzero(
+        taken & np.isfinite(points[:, 2]) & (np.abs(points[:, :2]) < config.max_range).all(1)
+    )
     column = np.floor(points[rows, :2] / config.cell).astype(np.int64) + half
     occupied = np.zeros((2 * half, 2 * half), np.bool_)
     occupied[tuple(column[linking[rows]].T)] = True
