@@ -54,7 +54,7 @@ class Script:
 
     def yaw(self, times: F64) -> F64:
         """Headings (m,) [rad, world], unwrapped."""
-        return np.interp(np.asarray(times, float), self._table, self._headings)
+        return np.asarray(np.interp(np.asarray(times, float), self._table, self._headings))
 
     def state(self, name: int, looks: Body, time: float) -> State:
         """Where the actor is at `time` [s since the first scan]."""

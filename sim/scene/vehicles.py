@@ -72,14 +72,14 @@ class Places:
     def within(self, centre: F64, low: float, high: float) -> Bool:
         """Places (m,) whose distance from `centre` (2,) lies between `low` and `high` [m]."""
         d = np.hypot(*(self.xy - centre).T)
-        return (d >= low) & (d <= high)
+        return np.asarray((d >= low) & (d <= high))
 
     def towards(self, centre: F64) -> Bool:
         """Places (m,) from which a vehicle comes nearer to `centre` (2,)."""
-        return np.einsum("ij,ij->i", self.direction, centre - self.xy) > 0
+        return np.asarray(np.einsum("ij,ij->i", self.direction, centre - self.xy) > 0)
 
     def on(self, key: Key, low: float, high: float) -> Bool:
         """Places (m,) on a lane between two arc lengths [m]."""
         if key not in self.keys:
             return np.zeros(len(self.arc), bool)
-        return (self.lane == self.keys.index(key)) & (self.arc >= low) & (self.arc <= high)
+        return np.asarray((self.lane == self.keys.index(key)) & (self.arc >= low) & (self.arc <= high))

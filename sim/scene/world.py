@@ -15,13 +15,14 @@ from scenarios.spec import Scenario
 from sim.scan.pattern import columns
 from sim.scene.contact import stand
 from sim.scene.curve import hermite
+from sim.scene.flow import Traffic
 from sim.scene.motion import Poses, edges
 from sim.scene.pedestrians import FIRST_ID as FIRST_WALKER
 from sim.scene.pedestrians import Walker
 from sim.scene.roads import Road
 from sim.scene.script import Script
 from sim.scene.terrain import Terrain, build_terrain
-from sim.scene.traffic import Traffic, action_space
+from sim.scene.traffic import action_space
 from sim.scene.vehicles import State, body
 
 FIRST_SCRIPT = 1
@@ -86,6 +87,8 @@ class World:
         ground, self._traffic_seed, *self._walker_seeds = spawn(seed, 2 + len(scenario.pedestrians))
         self._steps = int(np.ceil(PHYSICS / scenario.rate))
         self._edges = edges(columns(scenario.rate), 1.0 / scenario.rate)
+        self.crashed = self._played = False
+        self._warm_up = round(scenario.traffic.warm_up * scenario.rate)
         self._begin()
         area = around(self._traffic.reachable(scenario.duration), scenario.sensor.range + AROUND)
         self.roads = clip(self._traffic.roads, area)
@@ -139,11 +142,14 @@ class World:
         """Whether the ego has reached the end of its road."""
         return self._traffic.arrived
 
+    @property
+    def time(self) -> float:
+        """Now [s since the first scan]."""
+        return self._tick / (self._steps * self.scenario.rate)
+
     def _begin(self) -> None:
         scenario = self.scenario
-        self.crashed = self._played = False
         self._traffic = Traffic(scenario, self._traffic_seed)
-        self._warm_up = round(scenario.traffic.warm_up * scenario.rate)
         self._tick = -(self._warm_up + 1) * self._steps
         self._scripts = [(Script(a), body(f"{a.kind}/{a.variant}")) for a in scenario.actors]
         self._walkers = [
@@ -155,11 +161,6 @@ class World:
             self._traffic.way.place(walker.name, walker.claim())
         self._claim_scripts()
         self._traffic.populate()
-
-    @property
-    def time(self) -> float:
-        """Now [s since the first scan]."""
-        return self._tick / (self._steps * self.scenario.rate)
 
     def _play(self) -> list[list[State]]:
         """Play one period; the states (ego first) at its beginning and after each step."""
