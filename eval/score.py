@@ -11,7 +11,7 @@ import numpy as np
 
 from datmo.arrays import Bool
 from datmo.messages import Frame, Relief, Truth
-from eval.metrics.consistency import ConsistencyScores, Nis
+from eval.metrics.consistency import ConsistencyScores
 from eval.metrics.detection import DetectionScores, match_detections
 from eval.metrics.ghosts import ghost_detail, ghost_scores, ghosts, in_empty_space
 from eval.metrics.gospa import CUTOFF
@@ -64,13 +64,15 @@ class Scorer:
         self._moments: list[Moment] = []
         self._times: defaultdict[str, list[float]] = defaultdict(list)
 
-    def add(self, frame: Frame, truth: Truth, relief: Relief, nis: Nis | None = None) -> StepMetrics:
+    def add(
+        self, frame: Frame, truth: Truth, relief: Relief, nis: Mapping[int, float] | None = None
+    ) -> StepMetrics:
         """Take in one scan and score it alone.
 
         Args:
             frame: what perception made of the scan. truth: what the scan truly saw.
             relief: true ground at `grid_centres()`.
-            nis: track id -> normalised innovation squared of its update, and its dimension.
+            nis: track id -> normalised innovation squared of its position in this scan (2 dimensions).
 
         Returns:
             ground.*, detection.* and tracking.gospa of this scan, None where there is nothing to

@@ -14,7 +14,7 @@ from eval.metrics.matching import assign
 from eval.metrics.pairing import Paired
 from eval.metrics.ratio import mean, spread
 
-Nis = Mapping[int, tuple[float, int]]
+NIS_DIMENSION = 2
 
 
 def nees(error: F64, cov: F64) -> F64:
@@ -50,12 +50,14 @@ class ConsistencyScores:
         self._full: list[float] = []
         self._nis: list[float] = []
 
-    def add(self, frame: Frame, truth: Truth, paired: Paired, fed: Mapping[int, int], nis: Nis) -> None:
+    def add(
+        self, frame: Frame, truth: Truth, paired: Paired, fed: Mapping[int, int], nis: Mapping[int, float]
+    ) -> None:
         """Take in one scan.
 
         Args:
             fed: track id -> id of the object whose measurement updated it.
-            nis: track id -> normalised innovation squared of its update, and its dimension.
+            nis: track id -> normalised innovation squared of its position [2 dimensions].
         """
         i, j = self._pairs(frame, truth, paired)
         rows, columns = paired.objects[i], paired.tracks[j]
@@ -66,8 +68,7 @@ class ConsistencyScores:
         self._full += _finite(_full_nees(place, true.yaw, true.velocity, found.yaw, found.velocity, cov))
         for actor, track in paired.partner.items():
             if fed.get(track) == actor and track in nis:
-                value, dimension = nis[track]
-                self._nis += _finite(np.array([value / dimension]))
+                self._nis += _finite(np.array([nis[track] / NIS_DIMENSION]))
 
     def _pairs(self, frame: Frame, truth: Truth, paired: Paired) -> tuple[I64, I64]:
         """Matched pairs, then the rest by the filter's gate, as indices into `paired`."""

@@ -61,8 +61,6 @@ def test_the_filters_own_gate_is_not_tightened(make: Any) -> None:
 def test_nis_counts_true_measurements_only(make: Any) -> None:
     scores = ConsistencyScores()
     boxes, tracks = make.boxes([(0, 0), (50, 0)]), make.tracks([(0, 0), (50, 0), (90, 0)], ids=[10, 11, 12])
-    add(
-        scores, make, boxes, tracks, fed={10: 0, 11: 0, 12: 1}, nis={10: (3.0, 2), 11: (8.0, 2), 12: (9.0, 2)}
-    )
-    add(scores, make, boxes, tracks, fed={10: 0}, nis={10: (np.nan, 2)})
+    add(scores, make, boxes, tracks, fed={10: 0, 11: 0, 12: 1}, nis={10: 3.0, 11: 8.0, 12: 9.0})
+    add(scores, make, boxes, tracks, fed={10: 0}, nis={10: np.nan})
     assert scores.scores()["consistency.nis"] == pytest.approx(1.5)
