@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from datmo.arrays import F32, F64
+from datmo.geometry import inverse, transform
 from datmo.messages.base import Message
 
 AZIMUTH_STEP = np.deg2rad(0.5)
@@ -46,8 +47,7 @@ class Sight(Message):
             distance (n,) from the sensor to the place, and the nearest and farthest range seen
             in its direction, (n,) each [m], NaN where no ray returned or none was fired.
         """
-        R, t = self.T_world_sensor[:3, :3], self.T_world_sensor[:3, 3]
-        local = (np.atleast_2d(np.asarray(places, float)) - t) @ R
+        local = transform(inverse(self.T_world_sensor), np.atleast_2d(places))
         distance = np.linalg.norm(local, axis=1)
         row, column = cells(local, self.near.shape)
         fired = (row >= 0) & (row < self.near.shape[0])

@@ -1,0 +1,94 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from datmo import Datmo, Scan
+from datmo.config import DatmoConfig
+from datmo.errors import ConfigError
+from datmo.geometry import transform
+from datmo.pipeline import ground_below
+
+
+def read(path: Path) -> np.ndarray:
+    return np.fromfile(path, np.float32).reshape(-1, 4)
+
+
+def frames(real_data: Path) -> list[Path]:
+    return sorted((real_data / "real" / "frames").glob("*.bin"))
+
+
+def test_real_sweeps_flow_through(real_data: Path) -> None:
+    datmo = Datmo()
+    for k, path in enumerate(frames(real_data)):
+        cloud = read(path)
+        frame = datmo.step(Scan(points=cloud[:, :3], intensity=cloud[:, 3], stamp=k / 10))
+        n = len(cloud)
+        assert len(frame.ground) == len(frame.clusters.label) == n
+        assert 0.3 < frame.ground.is_ground.mean() < 0.8
+        assert len(frame.boxes) > 5
+        assert np.isfinite(frame.boxes.center).all()
+        assert not (frame.ground.is_ground & (frame.clusters.label >= 0)).any()
+    assert len(frame.tracks) > 10
+
+
+def test_ground_agrees_with_patchworkpp(real_data: Path) -> None:
+    patchwork = pytest.importorskip("pypatchworkpp")
+    settings = patchwork.Parameters()
+    settings.verbose = False
+    for path in frames(real_data):
+        cloud = read(path)
+        peer = patchwork.patchworkpp(settings)
+        peer.estimateGround(cloud)
+        theirs = np.zeros(len(cloud), bool)
+        theirs[peer.getGroundIndices()] = True
+        ours = Datmo().step(Scan(points=cloud[:, :3])).ground.is_ground
+        assert (ours == theirs).mean() >= 0.95
+
+
+def test_the_same_scans_give_the_same_frames(real_data: Path) -> None:
+    def play() -> list[object]:
+        datmo = Datmo()
+        return [
+            datmo.step(Scan(points=read(p)[:, :3], stamp=k / 10)) for k, p in enumerate(frames(real_data)[:2])
+        ]
+
+    assert play() == play()
+
+
+@pytest.mark.parametrize("n", [0, 1, 7])
+def test_hardly_any_points_are_no_trouble(n: int) -> None:
+    frame = Datmo().step(Scan(points=np.full((n, 3), 5.0)))
+    assert len(frame.ground) == n
+    assert len(frame.boxes) == 0
+    assert len(frame.tracks) == 0
+
+
+def test_points_that_are_not_finite_are_left_out() -> None:
+    rng = np.random.default_rng(0)
+    xy = rng.uniform(-20, 20, (4000, 2))
+    points = np.c_[xy, np.full(len(xy), -1.7)]
+    broken = points.copy()
+    broken[::10] = np.nan
+    frame = Datmo().step(Scan(points=broken))
+    assert not frame.ground.is_ground[::10].any()
+    assert (frame.clusters.label[::10] == -1).all()
+    assert frame.ground.is_ground[1::10].mean() > 0.9
+
+
+def test_ground_below_is_the_ground_in_the_world() -> None:
+    T = np.eye(4)
+    c, s = np.cos(0.2), np.sin(0.2)
+    T[:3, :3] = [[c, 0, s], [0, 1, 0], [-s, 0, c]]
+    T[:3, 3] = [100, 50, 7]
+    points = np.random.default_rng(1).uniform(-10, 10, (500, 3))
+    frame = Datmo().step(Scan(points=points, T_world_sensor=T))
+    feet = np.c_[points[:, :2].astype(np.float32), frame.ground.height]
+    np.testing.assert_allclose(ground_below(frame.scan, frame.ground), transform(T, feet)[:, 2], atol=1e-9)
+
+
+def test_an_unknown_ground_method_offers_the_nearest() -> None:
+    with pytest.raises(ConfigError, match="'z-se'"):
+        DatmoConfig().with_ground("zse")
