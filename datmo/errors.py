@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from difflib import get_close_matches
 
+FEW = 4  # so many names are all shown
+
 
 class DatmoError(Exception):
     """Base of every error the project raises on purpose."""
@@ -35,9 +37,9 @@ class SimulationError(DatmoError, RuntimeError):
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """A phrase that offers the known names nearest to `name`, for an error message."""
+    """A phrase for an error message that offers the known names nearest to `name`, or all of a few."""
     names = sorted(known)
     close = get_close_matches(name, names, n=3, cutoff=0.4)
-    if close:
+    if close and len(names) > FEW:
         return f"did you mean {' or '.join(repr(c) for c in close)}?"
     return f"choose one of {', '.join(names)}"

@@ -34,6 +34,8 @@ class Testbed(gym.Wrapper[Observation, Any, Observation, Any], EzPickle):
         config: the configuration of every stage.
     """
 
+    __test__ = False  # pytest would otherwise collect the name
+
     def __init__(self, env: gym.Env[Observation, Any], config: DatmoConfig | None = None) -> None:
         EzPickle.__init__(self, env, config)
         gym.Wrapper.__init__(self, env)

@@ -31,7 +31,13 @@ def test_a_step_carries_every_message(tiny: Scenario) -> None:
     obs, reward, _, _, info = env.step(0)
     assert obs in env.observation_space
     assert 0 <= reward <= 1
-    for name, kind in {"scan": Scan, "truth": Truth, "relief": Relief, "frame": Frame, "metrics": dict}.items():
+    for name, kind in {
+        "scan": Scan,
+        "truth": Truth,
+        "relief": Relief,
+        "frame": Frame,
+        "metrics": dict,
+    }.items():
         assert isinstance(info[name], kind)
     assert info["frame"].scan == info["scan"]
     assert not any(name.startswith("speed.") for name in info["metrics"])
@@ -84,12 +90,12 @@ def test_copies_restore_the_arguments(tiny: Scenario) -> None:
 
 def test_a_video_is_recorded(tiny: Scenario, tmp_path) -> None:
     pytest.importorskip("moviepy")
-    env = gym.wrappers.RecordVideo(made(tiny), str(tmp_path), episode_trigger=lambda _: True)
+    env = gym.wrappers.RecordVideo(made(tiny), str(tmp_path / "videos"), episode_trigger=lambda _: True)
     env.reset(seed=0)
     truncated = False
     while not truncated:
         truncated = env.step(0)[3]
     env.close()
-    videos = list(tmp_path.glob("*.mp4"))
+    videos = list(tmp_path.glob("videos/*.mp4"))
     assert len(videos) == 1
     assert videos[0].stat().st_size > 10_000
