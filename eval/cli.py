@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import sys
-from importlib.metadata import version
 from typing import Annotated
 
 import typer
@@ -18,6 +17,7 @@ from eval.commands.run import run
 from eval.commands.segment import segment
 from eval.commands.sweep import sweep
 from eval.commands.view import view
+from eval.facts import versions
 
 DONE, NOT_MET, BAD_INPUT, STOPPED = 0, 1, 2, 130
 USAGE_ERROR: type[Exception] = typer.BadParameter.__mro__[2]
@@ -46,7 +46,7 @@ for name, command in {
 
 def _say_version(wanted: bool) -> None:
     if wanted:
-        typer.echo(f"datmo {version('datmo-gym')}")
+        typer.echo(f"datmo {versions()['datmo-gym']}")
         raise typer.Exit()
 
 

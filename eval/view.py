@@ -48,8 +48,9 @@ def bird_eye(
     flat = _Flat(frame.scan)
     if truth is not None:
         _draw_truth(raster, flat, truth)
+    width, alpha = (1.5, 1.0) if truth is None else (1.0, 0.75)  # the detections are all there is to see
     for corners in flat.outlines(frame.boxes):
-        raster.line(corners, palette.DETECTION, 1.0, 0.75, closed=True)
+        raster.line(corners, palette.DETECTION, width, alpha, closed=True)
     _draw_tracks(raster, flat, frame, tails or {})
     raster.line(EGO_SHAPE, palette.EGO, 1.6, closed=True)
     return raster.image
@@ -118,7 +119,8 @@ def _draw_cloud(raster: Raster, frame: Frame, truth: Truth | None) -> None:
     scan = frame.scan
     T = scan.T_world_sensor
     points = scan.points
-    height = points @ T[2, :3].astype(np.float32) + np.float32(SENSOR_HEIGHT)
+    with np.errstate(invalid="ignore", over="ignore"):  # odd points are legal; they are not drawn
+        height = points @ T[2, :3].astype(np.float32) + np.float32(SENSOR_HEIGHT)
     height = np.nan_to_num(height, nan=0.0, posinf=0.0, neginf=0.0)
     label = np.where(frame.clusters.label >= 0, 64 + frame.clusters.label % 64, 0).astype(np.uint8)
     kind = truth.kind if truth else None

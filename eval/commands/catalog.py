@@ -12,7 +12,7 @@ from datmo.errors import ScenarioError, nearest
 def catalog(
     tag: Annotated[str | None, typer.Option("--tag", help="Only scenarios that carry this tag.")] = None,
 ) -> None:
-    """List the scenarios: name, tags and what happens.
+    """List the scenarios.
 
     \b
     Examples:

@@ -28,7 +28,9 @@ def check(
         "runs"
     ),
 ) -> None:
-    """Play scenarios; each passes or fails by its expect: block. A failure leaves its report.
+    """Hold scenarios to their expectations.
+
+    Each passes or fails by its expect: block; a failure leaves its report.
 
     Exit status 1: at least one failed. The same files are collected by pytest.
 

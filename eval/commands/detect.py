@@ -17,7 +17,7 @@ def detect(
     picture: o.Picture = None,
     force: o.Force = False,
 ) -> None:
-    """Find what stands on the ground in a lidar scan, as boxes.
+    """Find boxes in a lidar scan.
 
     Writes JSON: for each box center [m], size (length, width, height) [m] and yaw [rad] in the
     frame of the sensor (x forward, y left, z up), score, kind and points.

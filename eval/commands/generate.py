@@ -20,7 +20,9 @@ def generate(
     workers: o.Workers = 1,
     force: o.Force = False,
 ) -> None:
-    """Write labelled clouds: every point with its class and instance, every scan with its pose.
+    """Write labelled clouds.
+
+    Every point has its class and instance, every scan its pose.
 
     One episode is one sequence under DIR/sequences; more frames than an episode has go on with
     the next seed in the next sequence. Workers play sequences side by side.

@@ -16,7 +16,9 @@ def run(
     set_: o.Settings = None,
     force: o.Force = False,
 ) -> None:
-    """Play a scenario through the whole loop, score every stage and write a report.
+    """Play a scenario, score it, write a report.
+
+    Traffic, terrain, sweep, detector and tracker, each stage held against the truth.
 
     Leaves config.yaml, metrics.json, metrics.csv, report.html and figures/ in DIR
     (runs/SCENARIO-seedN by default). Exit status 1: an expectation of the scenario is not met.

@@ -23,7 +23,9 @@ def sweep(
     out: o.OutFolder = None,
     force: o.Force = False,
 ) -> None:
-    """Play a scenario at every combination of some of its values; one table, one figure.
+    """Play a scenario over a grid of its values.
+
+    Every combination gives a row of one table and a point of one figure.
 
     Leaves scores.csv (every metric but the times, each seed), table.md (means over seeds),
     figure.png and config.yaml in DIR (runs/sweep-SCENARIO by default).

@@ -21,7 +21,9 @@ def view(
     radius: Annotated[float, typer.Option("--radius", min=5, max=120, help="Half its extent [m].")] = 50.0,
     force: o.Force = False,
 ) -> None:
-    """Play a scenario and draw it from above: cloud by class, true boxes, tracks with tails.
+    """Draw a scenario from above, as a film.
+
+    Cloud by class, true boxes, tracks with tails.
 
     A .png is the picture of the last scan; .mp4 needs the extra "video".
 

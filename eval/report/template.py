@@ -40,8 +40,8 @@ figcaption { margin-top: .5rem; max-width: 50rem; }
   background: white; border-radius: 3px; cursor: pointer; }
 .player output { font-variant-numeric: tabular-nums; width: 4.4rem; text-align: right; font-size: .9rem; }
 table { border-collapse: collapse; font-size: .92rem; width: 100%; max-width: 50rem; }
-th { text-align: left; font-weight: 600; border-bottom: 1px solid var(--ink); padding: .25rem .8rem
-.25rem 0; }
+th { text-align: left; font-weight: 600; border-bottom: 1px solid var(--ink); }
+th { padding: .25rem .8rem .25rem 0; }
 td { padding: .18rem .8rem .18rem 0; border-bottom: 1px solid var(--line); }
 td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; }
 tr.group td { border: 0; padding-top: 1rem; font-weight: 600; }
@@ -57,8 +57,8 @@ tr.group td { border: 0; padding-top: 1rem; font-weight: 600; }
 <div class="scene">
 <div><img id="picture" src="$first" width="800" height="800" alt="bird's-eye view">
 <div class="player"><button id="play">play</button>
-<input id="slider" type="range" min="0" max="$last" value="0" aria-label="frame"><output
-id="clock"></output></div></div>
+<input id="slider" type="range" min="0" max="$last" value="0" aria-label="frame">
+<output id="clock"></output></div></div>
 <ul class="legend">$legend</ul>
 </div>
 <figcaption>Forward is up, rings every 10 m. Cloud by class, true boxes, detections, confirmed tracks with
@@ -77,8 +77,8 @@ never seen.</figcaption></figure>
 <h2>Time of each stage</h2>
 <figure><img src="$stage_times" alt="times of the stages"></figure>
 <h2>Metrics</h2>
-<table><thead><tr><th>metric</th><th
-class="number">value</th><th>unit</th><th>expected</th><th></th></tr></thead>
+<table><thead><tr><th>metric</th><th class="number">value</th>
+<th>unit</th><th>expected</th><th></th></tr></thead>
 <tbody>$rows</tbody></table>
 <p class="faint">“-” is a metric with nothing to measure; it meets no expectation.</p>
 <h2>Play it again</h2>
@@ -89,8 +89,11 @@ const frames = $frames, stamps = $stamps;
 const picture = document.getElementById("picture"), slider = document.getElementById("slider");
 const clock = document.getElementById("clock"), play = document.getElementById("play");
 let timer = null;
-function show(k) { slider.value = k; picture.src = frames[k]; clock.textContent =
-stamps[k].toFixed(1) + " s"; }
+function show(k) {
+  slider.value = k;
+  picture.src = frames[k];
+  clock.textContent = stamps[k].toFixed(1) + " s";
+}
 function stop() { clearInterval(timer); timer = null; play.textContent = "play"; }
 slider.addEventListener("input", () => { stop(); show(+slider.value); });
 play.addEventListener("click", () => {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -114,8 +114,10 @@ def _frame(k: int, scan: Scan, truth: Truth, hidden: bool) -> Frame:
 class StagedTestbed:
     """Stands in for the Testbed: the same contract, staged frames, given results."""
 
-    def __init__(self, scenario: Scenario, values: dict[str, float | None] | None = None) -> None:
-        self.scenario, self.values = scenario, values or {}
+    values: ClassVar[dict[str, float | None]] = {}
+
+    def __init__(self, scenario: Scenario, ground: str | None = None) -> None:
+        self.scenario, self.ground = scenario, ground
         self.lidar = SimpleNamespace(scenario=scenario, milliseconds={"traffic": 6.0, "cast": 40.0})
 
     def reset(self, seed: int | None = None) -> tuple[Any, dict[str, Any]]:
