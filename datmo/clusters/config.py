@@ -21,7 +21,7 @@ class ClusterConfig(BaseModel):
         "polar", description="cells that grow with range, or the thesis's plain grid (Alg. 8)"
     )
     cell: float = Field(0.25, gt=0, description="smallest cell, and the cell of the plain grid [m]")
-    growth_along: float = Field(0.03, gt=0, description="length of a cell along the ray over its range [1]")
+    growth_along: float = Field(0.016, gt=0, description="length of a cell along the ray over its range [1]")
     growth_across: float = Field(0.008, gt=0, description="width of a cell across the ray over its range [1]")
     max_range: float = Field(80.0, gt=0, description="points farther than this belong to no cluster [m]")
     min_height: float = Field(0.3, description="lowest height above the ground that links cells [m]")
