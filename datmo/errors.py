@@ -37,9 +37,9 @@ class SimulationError(DatmoError, RuntimeError):
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """A phrase for an error message that offers the known names nearest to `name`, or all of a few."""
+    """A phrase for an error message that offers the known names nearest to `name`, and all of a few."""
     names = sorted(known)
     close = get_close_matches(name, names, n=3, cutoff=0.4)
-    if close and len(names) > FEW:
-        return f"did you mean {' or '.join(repr(c) for c in close)}?"
-    return f"choose one of {', '.join(names)}"
+    guess = f"did you mean {' or '.join(repr(c) for c in close)}? " if close else ""
+    every = f"choose one of {', '.join(names)}" if len(names) <= FEW or not close else ""
+    return (guess + every).rstrip()
