@@ -17,8 +17,8 @@ class TrackerConfig(BaseModel):
         ("cv", "ctrv", "rm"), min_length=1, description="motion models of the IMM, by name"
     )
     accel_density: float = Field(1.5, gt=0, description="white acceleration along the heading [m²/s³]")
-    heading_density: float = Field(0.01, gt=0, description="random walk of a CV heading [rad²/s]")
-    yaw_accel_density: float = Field(0.15, gt=0, description="white yaw acceleration of CTRV [rad²/s³]")
+    heading_density: float = Field(0.006, gt=0, description="random walk of a CV heading [rad²/s]")
+    yaw_accel_density: float = Field(0.08, gt=0, description="white yaw acceleration of CTRV [rad²/s³]")
     random_density: float = Field(1.5, gt=0, description="random walk of an RM position [m²/s]")
     cv_keeps_yaw_rate: bool = Field(False, description="CV keeps its yaw rate, as the thesis has it")
 
@@ -57,7 +57,9 @@ class TrackerConfig(BaseModel):
     claim: float = Field(0.5, gt=0, le=1, description="a box claimed less than this may start a track")
     max_missed: float = Field(0.8, gt=0, description="life without a hit where it should be seen [s]")
     max_hidden: float = Field(6.0, gt=0, description="life without a hit in all [s]")
-    max_coast: float = Field(0.4, gt=0, description="life without a hit when no Sight is given [s]")
+    max_coast: float = Field(
+        0.3, gt=0, description="life without a hit when no Sight is given [s]; one miss at the least"
+    )
     max_position_std: float = Field(10.0, gt=0, description="a track less certain than this dies [m]")
     duplicate_distance: float = Field(1.0, ge=0, description="tracks nearer than this are one [m]")
     duplicate_spread: float = Field(0.3, ge=0, description="summed deviation of the difference [m]")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from datmo.arrays import F64
+from datmo.arrays import F64, Bool
 from datmo.geometry import wrap_angle
 from datmo.tracks.associate import Links
 from datmo.tracks.bank import Bank
@@ -16,6 +16,7 @@ from datmo.tracks.models import PSI, make_models
 from datmo.tracks.ukf import residual, tame
 
 LONGEST_STEP = 0.5  # [s] longer gaps are predicted in parts
+MOVING_SPEED, STANDING_SHARE = 1.0, 0.02
 TURNING_SPEED = 1.0  # [m/s] below which a box does not turn with the yaw rate
 
 
@@ -31,6 +32,7 @@ class Estimator:
         self.config, self.filters = config, filters
         self.models = make_models(config)
         self._has_yaw_rate = np.array([m.has_yaw_rate for m in self.models])
+        self._stands = np.array([m.stands for m in self.models])
         self._rates = rates(config)
 
     def predict(self, bank: Bank, dt: float) -> tuple[F64, F64]:
@@ -89,6 +91,16 @@ class Estimator:
             unseen = np.ones(len(bank), np.bool_)
             unseen[pairs.track] = False
             bank.mu[unseen] = before[unseen]
+            self._set_aside(bank, unseen)
+
+    def _set_aside(self, bank: Bank, unseen: Bool) -> None:
+        """Weigh models that stand almost out of what moves unseen: they would hold it back."""
+        if self._stands.all():
+            return
+        mean, _ = self.combined(bank)
+        rows = np.flatnonzero(unseen & (np.abs(mean[:, 3]) > MOVING_SPEED))
+        mu = bank.mu[rows] * np.where(self._stands, STANDING_SHARE, 1.0)
+        bank.mu[rows] = mu / mu.sum(axis=1, keepdims=True)
 
     def _mix(self, bank: Bank, dt: float) -> None:
         x, P, mu_bar = mix(*self._lent(bank), bank.mu, transition(self._rates, dt))

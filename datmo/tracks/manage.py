@@ -16,10 +16,10 @@ HIDDEN_SHARE = 0.2  # below this share in view a miss is no evidence at all
 BACKWARD_SPEED, BACKWARD_TIME = 1.0, 1.0  # who reverses faster and longer than this was born turned around
 
 
-def spent(bank: Bank, stamp: float, has_sight: bool, config: TrackerConfig) -> F64:
+def spent(bank: Bank, stamp: float, dt: float, has_sight: bool, config: TrackerConfig) -> F64:
     """Share (t,) of its life without hits that each track has used up; from 1 on it is dead."""
     if not has_sight:
-        return np.asarray((stamp - bank.seen) / config.max_coast)
+        return np.asarray((stamp - bank.seen) / max(config.max_coast, 1.5 * dt))
     return np.asarray(np.maximum(bank.missed / config.max_missed, (stamp - bank.seen) / config.max_hidden))
 
 

@@ -24,6 +24,7 @@ class MotionModel(ABC):
     """How a state moves in `dt` and how uncertain that is."""
 
     has_yaw_rate: bool
+    stands: bool = False  # whether it keeps the place whatever the speed
 
     @abstractmethod
     def propagate(self, x: F64, dt: float) -> F64:
@@ -103,6 +104,7 @@ class RandomMotion(MotionModel):
     accel_density: float
     heading_density: float
     has_yaw_rate = False
+    stands = True
 
     def propagate(self, x: F64, dt: float) -> F64:  # noqa: ARG002 - it stays
         """See `MotionModel`."""

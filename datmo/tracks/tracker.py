@@ -57,6 +57,7 @@ class Tracker:
         self._lost = Bank.empty(len(self.config.models))
         self._new = Newborns.start(np.zeros(0, np.int64), 0.0, Boxes.empty(), self.config)
         self._stamp: float | None = None
+        self._dt = 0.0
         self.notes: dict[str, str] = {}
         self.nis: dict[int, tuple[float, int]] = {}
 
@@ -121,7 +122,7 @@ class Tracker:
             self.reset()
             self.notes["gap"] = f"{dt:.1f} s without a scan; all tracks ended"
             dt = 0.0
-        self._stamp = stamp
+        self._stamp, self._dt = stamp, dt
         return dt
 
     def _accept(self, boxes: Boxes) -> Boxes:
@@ -184,14 +185,14 @@ class Tracker:
         back = take_over(pool.select(old), grown.select(young))
         self._lost = pool.select(~living & ~taken)
         self._bury(pool.select(living & ~taken).join(back).join(grown.select(rest)), has_sight)
-        share = manage.spent(self._bank, stamp, has_sight, config)
+        share = manage.spent(self._bank, stamp, self._dt, has_sight, config)
         mean, P = self._estimator.combined(self._bank)
         return as_tracks(self._bank, mean, P, manage.status(share), self._new, stamp, config)
 
     def _bury(self, bank: Bank, has_sight: bool) -> None:
         config, stamp = self.config, float(self._stamp or 0.0)
         mean, P = self._estimator.combined(bank)
-        living = manage.alive(mean, P, manage.spent(bank, stamp, has_sight, config), config)
+        living = manage.alive(mean, P, manage.spent(bank, stamp, self._dt, has_sight, config), config)
         double = manage.duplicates(bank, mean, config)
         self._bank = bank.select(living & ~double)
         finite = np.isfinite(mean).all(axis=1)
