@@ -56,39 +56,45 @@ def extents(xy: F64, starts: I64, angle: F64) -> F64:
 def _search(outline: F64, length: I64, cos: F64, sin: F64, nearest: float, weights: F64) -> I64:
     best = np.zeros(len(outline), np.int64)
     score = np.zeros((3, len(cos)))
+    scratch = np.empty((2, outline.shape[1]))
     for k in range(len(outline)):
-        m = length[k]
-        x, y = outline[k, :m, 0], outline[k, :m, 1]
+        points = outline[k, : length[k]]
+        to_x, to_y = scratch[0, : length[k]], scratch[1, : length[k]]
         for a in range(len(cos)):
-            to_x, area_x = _to_edge(cos[a] * x + sin[a] * y)
-            to_y, area_y = _to_edge(cos[a] * y - sin[a] * x)
+            extent_x = _to_edge(points, cos[a], sin[a], to_x)
+            extent_y = _to_edge(points, -sin[a], cos[a], to_y)
             if weights[AREA] != 0:
-                score[AREA, a] = -area_x * area_y
+                score[AREA, a] = -extent_x * extent_y
             if weights[CLOSENESS] != 0:
                 score[CLOSENESS, a] = _closeness(to_x, to_y, nearest)
             if weights[SQUARED_ERROR] != 0:
                 score[SQUARED_ERROR, a] = -_squared_error(to_x, to_y) - _squared_error(to_y, to_x, True)
         total = np.zeros(len(cos))
         for c in range(3):
-            if weights[c] != 0:
-                spread = score[c].max() - score[c].min()
-                if spread > 0:  # each criterion on its own scale, 0 worst .. 1 best
-                    total += weights[c] * (score[c] - score[c].min()) / spread
+            spread = score[c].max() - score[c].min()
+            if weights[c] != 0 and spread > 0:  # each criterion on its own scale, 0 worst .. 1 best
+                total += weights[c] * (score[c] - score[c].min()) / spread
         best[k] = np.argmax(total)
     return best
 
 
 @njit(cache=True, nogil=True)
-def _to_edge(c: F64) -> tuple[F64, float]:
-    """Distance of each point to the one of the two edges that is nearer on the whole, and the extent."""
-    if len(c) == 0:
-        return c, 0.0
-    low, high = c.min(), c.max()
+def _to_edge(points: F64, u: float, v: float, distance: F64) -> float:
+    """Project on the axis (u, v); fill in the distances to the edge that is nearer on the whole.
+
+    Returns the extent along the axis.
+    """
+    low, high = np.inf, -np.inf
+    for i in range(len(points)):
+        distance[i] = u * points[i, 0] + v * points[i, 1]
+        low, high = min(low, distance[i]), max(high, distance[i])
     to_low, to_high = 0.0, 0.0
-    for v in c:
-        to_low += (v - low) ** 2
-        to_high += (high - v) ** 2
-    return (high - c if to_high < to_low else c - low), high - low
+    for i in range(len(points)):
+        to_low += (distance[i] - low) ** 2
+        to_high += (high - distance[i]) ** 2
+    for i in range(len(points)):
+        distance[i] = high - distance[i] if to_high < to_low else distance[i] - low
+    return max(high - low, 0.0)
 
 
 @njit(cache=True, nogil=True)
