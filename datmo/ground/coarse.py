@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numba
 import numpy as np
 
-from datmo.arrays import F64
+from datmo.arrays import F64, I64
 
 RIDGE_STD = 3.0
 STEPS = 12
@@ -31,17 +31,17 @@ class SheetRules:
 
 
 @numba.njit(cache=True, nogil=True)
-def basis(xy: F64, cell: float, knots: int) -> tuple[F64, F64, F64]:
-    """First knot (n, 2) and cubic B-spline weights (n, 4) along x and along y of each place."""
+def basis(xy: F64, cell: float, knots: int) -> tuple[I64, F64, F64]:
+    """First knot (n,), x by x, and cubic B-spline weights (n, 4) along x and along y of each place."""
     n = len(xy)
-    first, wx, wy = np.empty((n, 2)), np.empty((n, 4)), np.empty((n, 4))
+    first, wx, wy = np.zeros(n, np.int64), np.empty((n, 4)), np.empty((n, 4))
     for i in range(n):
         for k in range(2):
             u = xy[i, k] / cell + (knots - 3) / 2
             u = min(max(u, 0.0), knots - 3 - 1e-9)
             j = int(u)
             t = u - j
-            first[i, k] = j
+            first[i] = first[i] * knots + j
             w = wx if k == 0 else wy
             w[i, 0] = (1 - t) ** 3 / 6
             w[i, 1] = (3 * t**3 - 6 * t**2 + 4) / 6
@@ -51,28 +51,31 @@ def basis(xy: F64, cell: float, knots: int) -> tuple[F64, F64, F64]:
 
 
 @numba.njit(cache=True, nogil=True)
-def value(c: F64, first: F64, wx: F64, wy: F64) -> F64:
+def value(c: F64, first: I64, wx: F64, wy: F64) -> F64:
     """Height (n,) of the sheet with coefficients c (knots, knots)."""
-    out = np.zeros(len(first))
+    out, flat, knots = np.empty(len(first)), c.ravel(), len(c)
     for i in range(len(first)):
-        jx, jy = int(first[i, 0]), int(first[i, 1])
+        u, height = wy[i], 0.0
         for a in range(4):
-            row = 0.0
-            for b in range(4):
-                row += wy[i, b] * c[jx + a, jy + b]
-            out[i] += wx[i, a] * row
+            j = first[i] + a * knots
+            row = u[0] * flat[j] + u[1] * flat[j + 1] + u[2] * flat[j + 2] + u[3] * flat[j + 3]
+            height += wx[i, a] * row
+        out[i] = height
     return out
 
 
 @numba.njit(cache=True, nogil=True)
-def _spread(v: F64, first: F64, wx: F64, wy: F64, out: F64, square: bool) -> None:
-    """Add the transpose of `value` (of its square, for the diagonal) applied to v."""
+def _spread(v: F64, first: I64, wx: F64, wy: F64, out: F64) -> None:
+    """Add the transpose of `value` applied to v to `out` (knots, knots)."""
+    flat, knots = out.reshape(-1), len(out)
     for i in range(len(first)):
-        jx, jy = int(first[i, 0]), int(first[i, 1])
+        u = wy[i]
         for a in range(4):
-            for b in range(4):
-                w = wx[i, a] * wy[i, b]
-                out[jx + a, jy + b] += v[i] * (w * w if square else w)
+            j, w = first[i] + a * knots, v[i] * wx[i, a]
+            flat[j] += w * u[0]
+            flat[j + 1] += w * u[1]
+            flat[j + 2] += w * u[2]
+            flat[j + 3] += w * u[3]
 
 
 @numba.njit(cache=True, nogil=True)
@@ -108,10 +111,10 @@ def _stiffness(c: F64, bend: float, slope: float, out: F64) -> None:
 
 
 @numba.njit(cache=True, nogil=True)
-def _apply(p: F64, w: F64, first: F64, wx: F64, wy: F64, bend: float, slope: float, ridge: float) -> F64:
+def _apply(p: F64, w: F64, first: I64, wx: F64, wy: F64, bend: float, slope: float, ridge: float) -> F64:
     """The normal matrix applied to p."""
     out = ridge * p
-    _spread(w * value(p, first, wx, wy), first, wx, wy, out, False)
+    _spread(w * value(p, first, wx, wy), first, wx, wy, out)
     _stiffness(p, bend, slope, out)
     return out
 
@@ -127,13 +130,13 @@ def _dot(a: F64, b: F64) -> float:
 
 @numba.njit(cache=True, nogil=True)
 def solve(
-    c: F64, z: F64, w: F64, first: F64, wx: F64, wy: F64, bend: float, slope: float, ridge: float, steps: int
+    c: F64, z: F64, w: F64, first: I64, wx: F64, wy: F64, bend: float, slope: float, ridge: float, steps: int
 ) -> F64:
     """Coefficients after `steps` of preconditioned conjugate gradients from c."""
     diagonal = np.full_like(c, ridge + 28 * bend + 4 * slope)
-    _spread(w, first, wx, wy, diagonal, True)
+    _spread(w, first, wx * wx, wy * wy, diagonal)
     r = -_apply(c, w, first, wx, wy, bend, slope, ridge)
-    _spread(w * z, first, wx, wy, r, False)
+    _spread(w * z, first, wx, wy, r)
     y = r / diagonal
     p = y.copy()
     rho = _dot(r, y)

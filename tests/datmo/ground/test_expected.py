@@ -39,7 +39,7 @@ def test_sheet_solves_its_normal_equations() -> None:
     first, wx, wy = basis(xy, cell, k)
     B = np.zeros((n, k, k))
     for i in range(n):
-        a, b = first[i].astype(int)
+        a, b = divmod(first[i], k)
         B[i, a : a + 4, b : b + 4] = np.outer(wx[i], wy[i])
     B = B.reshape(n, -1)
     D1, D2, eye = np.diff(np.eye(k), axis=0), np.diff(np.eye(k), 2, axis=0), np.eye(k)
