@@ -61,13 +61,13 @@ class Returns:
         points, T = frame.scan.points, frame.scan.T_world_sensor
         rows = np.flatnonzero(~frame.ground.is_ground & finite(points))
         held = points[rows].astype(float)
-        x = held @ T[0, :3] + T[0, 3]
+        x, y = (T[i, 0] * held[:, 0] + T[i, 1] * held[:, 1] + T[i, 2] * held[:, 2] + T[i, 3] for i in (0, 1))
         # Strips of 0.5 m along x as 16-bit numbers, which numpy sorts by radix; far ones wrap
         # around and are told apart by place.
         strip = np.floor(x / STRIP).astype(np.int64).astype(np.int16)
         order = np.argsort(strip, kind="stable")
         self._strip = strip[order]
-        self._x, self._y = x[order], (held @ T[1, :3] + T[1, 3])[order]
+        self._x, self._y = x[order], y[order]
         self._is_thing: Bool = (truth.thing[rows] >= 0)[order]
 
     def on_things(self, boxes: Boxes) -> tuple[Bool, Bool]:

@@ -31,6 +31,7 @@ class Paired:
         similarity: (g, t) max(0, 1 - distance / d0), 0 where not allowed.
         pairs: (p, 2) matched (object, track), indices into the g objects and t tracks.
         ignored: number of reported tracks that do not count.
+        called_static: number of moving objects missed with a track called static in their gate.
     """
 
     objects: I64
@@ -42,6 +43,7 @@ class Paired:
     similarity: F64
     pairs: I64
     ignored: int
+    called_static: int
 
     @property
     def partner(self) -> dict[int, int]:
@@ -55,8 +57,8 @@ class Pairer:
 
     Actors that are neither hidden nor out of range are matched first, at d <= d0 / 2. A reported
     track that is left over is ignored within the gate of an actor that is hidden or out of range
-    (the object is there), when it is called static and lies within the gate of a moving actor
-    (that counts once, as a miss), or when it is called static and stands on a thing. A track
+    (the object is there), when it is called static and lies within the gate of a moving actor that
+    is missed (which counts once, as the miss), or when it is called static and stands on a thing. A track
     whose box holds no obstacle return keeps the last answer to whether it stands on a thing.
     """
 
@@ -69,30 +71,28 @@ class Pairer:
         tracks, boxes = frame.tracks, truth.boxes
         valid = truth.visibility > Visibility.HIDDEN
         objects, rows = np.flatnonzero(valid), np.flatnonzero(tracks.confirmed())
-        place = tracks.boxes.center[rows]
         moving = np.hypot(boxes.velocity[:, 0], boxes.velocity[:, 1]) > MOVING
         dynamic = tracks.is_dynamic[rows]
 
-        every = distances(boxes.center, place)
+        every = distances(boxes.center, tracks.boxes.center[rows])
         distance = every[objects]
         allowed = dynamic | ~moving[objects, None]
-        reach = reaches(boxes.kind[objects])[:, None]
-        similarity = np.where(allowed, np.maximum(0, 1 - distance / reach), 0.0)
+        nearness = 1 - distance / reaches(boxes.kind[objects])[:, None]
+        similarity = np.where(allowed, np.maximum(0, nearness), 0.0)
         pairs = self._match(boxes.id[objects], tracks.boxes.id[rows], similarity)
 
         left = np.ones(len(rows), bool)
         left[pairs[:, 1]] = False
+        missed = valid & moving
+        missed[objects[pairs[:, 0]]] = False
         within = every <= gates(boxes)[:, None]
-        ignored = left & (within[~valid].any(0) | (~dynamic & within[valid & moving].any(0)))
+        called_static = within & missed[:, None] & left & ~dynamic
+        ignored = (left & within[~valid].any(0)) | called_static.any(0)
         static = np.flatnonzero(left & ~ignored & ~dynamic)
         ignored[static] = self._stand_on_things(frame, rows[static], returns)
 
         kept = np.flatnonzero(~ignored)
-        pairs[:, 1] = np.searchsorted(kept, pairs[:, 1])
-        self._partner = {
-            int(boxes.id[objects[i]]): int(tracks.boxes.id[rows[kept[j]]]) for i, j in pairs.tolist()
-        }
-        return Paired(
+        paired = Paired(
             objects=objects,
             tracks=rows[kept],
             object_id=boxes.id[objects],
@@ -100,9 +100,12 @@ class Pairer:
             distance=distance[:, kept],
             allowed=allowed[:, kept],
             similarity=similarity[:, kept],
-            pairs=pairs,
+            pairs=np.column_stack([pairs[:, 0], np.searchsorted(kept, pairs[:, 1])]),
             ignored=len(rows) - len(kept),
+            called_static=int(called_static.any(1).sum()),
         )
+        self._partner = paired.partner
+        return paired
 
     def _match(self, object_id: I64, track_id: I64, similarity: F64) -> I64:
         """Pairs (p, 2) of greatest total similarity, those of the last scan kept before all."""

@@ -27,7 +27,7 @@ class Clear:
 
     def __init__(self) -> None:
         self.matched = self.false = self.missed = 0
-        self.switches = self.fragmentations = self.ignored = 0
+        self.switches = self.fragmentations = self.ignored = self.called_static = 0
         self.distances: list[float] = []
         self._partner: dict[int, int] = {}
         self._interrupted: set[int] = set()
@@ -39,6 +39,7 @@ class Clear:
         self.missed += len(paired.objects) - len(rows)
         self.false += len(paired.tracks) - len(rows)
         self.ignored += paired.ignored
+        self.called_static += paired.called_static
         self.distances += paired.distance[rows, columns].tolist()
         partner = paired.partner
         for actor in paired.object_id.tolist():
@@ -66,6 +67,7 @@ class Clear:
         return {
             "matched": self.matched,
             "missed": self.missed,
+            "missed_called_static": self.called_static,
             "false": self.false,
             "ignored": self.ignored,
             "distance": spread(self.distances),

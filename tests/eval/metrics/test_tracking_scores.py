@@ -169,6 +169,9 @@ def test_a_moving_object_called_static_is_one_miss(make: Any) -> None:
     static = make.tracks([(0, 0)], dynamic=False)
     missed = pair_one(make, moving, static)
     assert (len(missed.object_id), len(missed.track_id), len(missed.pairs)) == (1, 0, 0)
+    assert missed.called_static == 1
+    twice = pair_one(make, moving, make.tracks([(0, 0), (1, 0)], dynamic=[True, False]))
+    assert (len(twice.pairs), len(twice.track_id), twice.called_static) == (1, 2, 0)
     assert len(pair_one(make, parked, static).pairs) == 1
     assert len(pair_one(make, parked, make.tracks([(0, 0)])).pairs) == 1
 
