@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 from time import perf_counter
-from typing import Any
+from typing import Any, cast
 
 import gymnasium as gym
 from gymnasium.envs.registration import EnvSpec
@@ -60,14 +60,14 @@ class Testbed(gym.Wrapper[Observation, Any, Observation, Any], EzPickle):
         self._note_times(perf_counter() - start)
         return obs, reward, terminated, truncated, info
 
-    def render(self) -> U8 | None:  # type: ignore[override]
+    def render(self) -> U8 | None:
         """The bird's-eye picture (h, w, 3): cloud by class, true boxes, tracks with tails."""
         if self.render_mode is None:
-            return self.env.render()  # type: ignore[return-value]  # says how to ask for pictures
+            return cast("U8 | None", self.env.render())  # says how to ask for pictures
         return self._view.draw(self._frame, self._truth)
 
     @property
-    def spec(self) -> EnvSpec | None:
+    def spec(self) -> EnvSpec | None:  # type: ignore[override]
         """The id this test-bed was made from; the wrapper is part of it, not an addition."""
         return self.env.spec
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 from time import perf_counter
-from typing import Any, ClassVar
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
-from gymnasium.spaces import Box, Dict
+from gymnasium.spaces import Box, Dict, Space
 from gymnasium.utils import EzPickle
 
 from datmo.arrays import F32, F64, U8
@@ -44,7 +44,10 @@ class LidarEnv(gym.Env[Observation, Any], EzPickle):
         ScenarioError: the scenario is unknown or wrong.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array"], "render_fps": 10}
+    metadata: dict[str, Any] = {  # noqa: RUF012 - Gymnasium declares it so
+        "render_modes": ["rgb_array"],
+        "render_fps": 10,
+    }
 
     def __init__(
         self, scenario: str | Path | Scenario = "rough-crossing", render_mode: str | None = None
@@ -55,7 +58,7 @@ class LidarEnv(gym.Env[Observation, Any], EzPickle):
         self.metadata = {**type(self).metadata, "render_fps": round(self.scenario.rate)}
         self.columns = Lidar.columns(self.scenario.rate)
         shape = (64, self.columns)
-        self.observation_space = Dict(
+        self.observation_space: Space[Observation] = Dict(  # type: ignore[assignment]
             range=Box(0, self.scenario.sensor.range + 1, shape, np.float32),
             intensity=Box(0, 1, shape, np.float32),
         )
@@ -89,7 +92,7 @@ class LidarEnv(gym.Env[Observation, Any], EzPickle):
         truncated = self._index + 1 >= self.scenario.scans
         return obs, 0.0, terminated, truncated, info
 
-    def render(self) -> U8 | None:  # type: ignore[override]
+    def render(self) -> U8 | None:
         """The bird's-eye picture (h, w, 3) of the last scan: cloud by class, true boxes."""
         if self.render_mode is None:
             gym.logger.warn("render() was called without render_mode; pass render_mode='rgb_array'")

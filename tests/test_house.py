@@ -34,6 +34,14 @@ def test_rooms_stay_small(path: Path) -> None:
             assert lines <= FUNCTION_LINES, f"{path.name}:{node.lineno} {node.name} has {lines} lines"
 
 
+@pytest.mark.parametrize("path", SOURCES, ids=lambda p: str(p.relative_to(ROOT)))
+def test_eval_is_never_imported_bare(path: Path) -> None:
+    """`import eval` would shadow the builtin; write `from eval.x import y`."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            assert all(alias.name.split(".")[0] != "eval" for alias in node.names)
+
+
 @pytest.mark.parametrize(
     ("package", "only"), [("highway_env", "sim/scene/traffic.py"), ("embreex", "sim/scan/embree.py")]
 )

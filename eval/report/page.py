@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 
 from datmo.messages import Kind
-from eval import palette
 from eval.report.recording import Recording
 from eval.report.template import PAGE
 from eval.verdict import Verdict, judge, say_value
+from sim.picture import palette
 
 LEGEND: tuple[tuple[str, palette.Colour, str], ...] = (
     ("car", palette.KIND[Kind.CAR], ""),

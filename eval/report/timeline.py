@@ -10,9 +10,9 @@ from matplotlib.patches import Patch
 
 from datmo.arrays import Array
 from datmo.messages import Kind, Visibility
-from eval.palette import track_colour
 from eval.report.recording import Moment
 from eval.report.style import FAINT, INK, figure, png
+from sim.picture.palette import track_colour
 
 WIDTH, ROW = 9.0, 0.34
 BANDS = {

@@ -77,16 +77,12 @@ class Population:
             start: (2,) of the ego at the first scan [m, world]. direction: (2,) in which it goes.
         """
         later = start + AHEAD * direction
-        near = self._places.within(start, 0, self._reach - 10) & self._places.within(
-            later, 0, self._reach - 10
-        )
-        near &= ~clear
-        coming = near & self._places.towards(later)
-        found: list[Arrival] = []
-        for tries in range(60 * self._count):
-            if len(found) >= self._count + SPARE:
-                break
-            found += self._appear(near if tries % 4 == 0 else coming)
+        near = self._places.within(later, 0, self._reach - 10) & ~clear
+        both = near & self._places.within(start, 0, self._reach - 10)
+        most = self._count + SPARE if self._count else 0
+        found = self._fill(self._places.within(start, 0, self._reach - 5) & self._places.towards(start) & ~near & ~clear, 2 if most else 0)
+        found += self._fill(both, most // 2)
+        found += self._fill(near & self._places.towards(later), most - len(found))
         return [*found, *self.refill(start, 0, clear)]
 
     def gone(self, distance: float) -> bool:
@@ -99,24 +95,33 @@ class Population:
         Args:
             centre: (2,) of the ego [m, world]. waiting: vehicles that are out there already.
         """
-        missing = (self._count + 1) // 2 + 1 - waiting if self._count else 0
+        missing = (self._count + 1) // 2 - waiting
         if missing <= 0:
             return []
         low = self._reach + OUTSIDE
         ring = self._places.within(centre, low, low + STOCK - 10) & self._places.towards(centre) & ~clear
-        tried = [self._appear(ring) for _ in range(3 * missing)]
-        return [arrival for one in tried for arrival in one]
+        return self._fill(ring, missing)
 
     def waiting(self, distance: float) -> bool:
         """Whether a vehicle at this distance from the ego [m] is in the ring or beyond it."""
         return distance > self._reach + OUTSIDE
 
-    def _appear(self, where: Bool) -> list[Arrival]:
-        """A new vehicle at one of some places, or none where somebody has, or needs, the ground."""
-        choice = np.flatnonzero(where)
-        if len(choice) == 0:
-            return []
-        i = int(choice[self._rng.integers(len(choice))])
+    def _fill(self, where: Bool, count: int) -> list[Arrival]:
+        """Up to `count` new vehicles at some of the places; fewer where they do not fit."""
+        found: list[Arrival] = []
+        left = where.copy()
+        while len(found) < count and left.any():
+            choice = np.flatnonzero(left)
+            i = int(choice[self._rng.integers(len(choice))])
+            made = self._appear(i)
+            found += made
+            around = 10.0 if made else 3.0
+            arc = self._places.arc
+            left &= (self._places.lane != self._places.lane[i]) | (np.abs(arc - arc[i]) > around)
+        return found
+
+    def _appear(self, i: int) -> list[Arrival]:
+        """A new vehicle at place i, or none where somebody has, or needs, the ground."""
         key, arc = self._places.keys[self._places.lane[i]], float(self._places.arc[i])
         limit = self._limits[key]
         speed = float(np.clip(PACE * limit + self._rng.normal(), 0.5 * limit, limit))

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from datmo.messages import Boxes, Clusters, Frame, Ground, Scan, Tracks
-from eval import palette
-from eval.raster import GLYPHS, Raster
 from eval.view import BirdsEye, bird_eye
+from sim.picture import palette
+from sim.picture.raster import GLYPHS, Raster
 
 
 def alone(xy: list[list[float]], ground: bool, **parts: object) -> Frame:
