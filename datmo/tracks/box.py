@@ -46,8 +46,8 @@ def read(
         whole = np.asarray(real.all(axis=2))
         shift = whole_center(center[:, :2], axes, seen, missing, real, mean[track, :2], sight)
     missing = np.where(whole, 0.0, missing)
-    spread = (config.partial_std * missing) ** 2
-    R = config.position_std**2 * np.eye(2) + np.einsum("pa,pai,paj->pij", spread, axes, axes)
+    std = np.where(whole, config.whole_std, config.position_std)
+    R = np.einsum("pa,pai,paj->pij", std**2 + (config.partial_std * missing) ** 2, axes, axes)
     yaw = np.where(yaw_is_sure(boxes.size, config), boxes.yaw, np.nan)[box]
     n = len(track)
     return Pairs(
@@ -95,7 +95,7 @@ def retain(bank: Bank, boxes: Boxes, pairs: Pairs, mean: F64, dt: float, config:
     t, b = pairs.track, pairs.box
     seen = np.column_stack([pairs.seen, boxes.size[b, 2]])
     old = bank.size[t]
-    whole = np.column_stack([pairs.whole, np.zeros(len(t), np.bool_)])
+    whole = np.column_stack([pairs.whole, pairs.whole.all(axis=1)])
     grow = np.where(whole, config.whole_gain, config.grow)
     shrink = np.where(whole, config.whole_gain, config.shrink)
     gain = np.where(seen > old, np.where(seen > LEAP * old + 0.5, MERGER_GAIN, grow), shrink)

@@ -31,7 +31,10 @@ class TrackerConfig(BaseModel):
     mix_yaw_rate: bool = Field(False, description="models without a yaw rate mix one in (textbook IMM)")
 
     # Measurement (8, 14)
-    position_std: float = Field(0.15, gt=0, description="noise of a whole box's centre [m]")
+    position_std: float = Field(
+        0.15, gt=0, description="noise of a box's centre where an end may be unseen [m]"
+    )
+    whole_std: float = Field(0.08, gt=0, description="noise where both ends are real, as without a Sight [m]")
     yaw_std: float = Field(0.06, gt=0, description="noise of a sure box yaw [rad]")
     use_yaw: bool = Field(True, description="box yaw is a third measurement, modulo pi")
     yaw_gate: float = Field(3.5, gt=0, description="a yaw further off than this is no measurement [sigma]")

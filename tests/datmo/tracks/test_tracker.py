@@ -108,7 +108,7 @@ def test_a_circle_is_followed_through_pi_without_a_flip():
 
 def test_innovations_are_consistent():
     """NIS over matched noise: its mean is the dimension."""
-    config = TrackerConfig(position_std=0.15)
+    config = TrackerConfig(position_std=0.15, whole_std=0.15)
     values = []
     for seed in range(5):
         tracker = Tracker(config)
