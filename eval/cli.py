@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Callable
 from typing import Annotated
 
 import typer
@@ -31,7 +32,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
-for name, command in {
+COMMANDS: dict[str, Callable[..., None]] = {
     "list": catalog,
     "run": run,
     "test": check,
@@ -40,7 +41,8 @@ for name, command in {
     "segment": segment,
     "detect": detect,
     "view": view,
-}.items():
+}
+for name, command in COMMANDS.items():
     app.command(name)(command)
 
 

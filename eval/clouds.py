@@ -61,7 +61,7 @@ def read_bin(path: Path) -> Cloud:
             "it is cut short or of another format; copy it again or convert it"
         )
     rows: F32 = np.frombuffer(data, "<f4").reshape(-1, 4).astype(np.float32)
-    kept = np.isfinite(rows[:, :3]).all(1)
+    kept = np.asarray(np.isfinite(rows[:, :3]).all(axis=1))
     if not kept.any():
         raise CloudFileError(f"{path}: none of its {len(rows)} points is finite; give another file")
     rows = rows[kept]

@@ -28,7 +28,7 @@ def height_error(heights: HeightMap) -> bytes:
     bar = made.colorbar(image, ax=axes, shrink=0.8, pad=0.02, extend="both")
     bar.set_label("predicted minus true height [m]", color=INK, size=9)
     bar.ax.tick_params(labelsize=8, colors=FAINT, labelcolor=INK)
-    bar.outline.set_visible(False)  # type: ignore[operator]
+    bar.outline.set_visible(False)
     return png(made)
 
 

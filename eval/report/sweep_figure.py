@@ -29,10 +29,8 @@ def sweep_figure(made: Sweep) -> bytes:
     if len(made.keys) > 1:
         handles, labels = panels[0].get_legend_handles_labels()
         title = ", ".join(made.keys[1:])
-        place = "outside upper center"
-        figure.legend(
-            handles, labels, title=title, loc=place, ncols=8, frameon=False, fontsize=8, title_fontsize=8
-        )
+        style = {"ncols": 8, "frameon": False, "fontsize": 8, "title_fontsize": 8}
+        figure.legend(handles, labels, loc="outside upper center", title=title, **style)
     return png(figure)
 
 

@@ -63,13 +63,13 @@ def semantic_classes(truth: Truth) -> Array:
     table = np.zeros(256, np.uint32)
     for kind, code in STATIC.items():
         table[kind] = code
-    code = table[truth.kind]
+    label: Array = table[truth.kind]
     speed = np.hypot(truth.boxes.velocity[:, 0], truth.boxes.velocity[:, 1])
     moving = np.array([MOVING_CLASS.get(Kind(k), table[k]) for k in truth.boxes.kind], np.uint32)
     of_box = np.where(speed > MOVING, moving, table[truth.boxes.kind])
     on_actor = truth.actor >= 0
-    code[on_actor] = of_box[truth.actor[on_actor]]
-    return code
+    label[on_actor] = of_box[truth.actor[on_actor]]
+    return label
 
 
 def numbers(rows: Array) -> str:
