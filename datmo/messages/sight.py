@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from datmo.arrays import F32, F64
+from datmo.arrays import F32, F64, I64
 from datmo.geometry import inverse, transform
 from datmo.messages.base import Message
 
@@ -57,7 +57,7 @@ class Sight(Message):
         return distance, np.where(seen, near, np.nan), np.where(seen, far, np.nan)
 
 
-def cells(points: F64, shape: tuple[int, ...]) -> tuple[F64, F64]:
+def cells(points: F64, shape: tuple[int, ...]) -> tuple[I64, I64]:
     """Row and column of each point (n, 3) [m, sensor]; rows may lie outside `shape`."""
     azimuth = np.arctan2(points[:, 1], points[:, 0])
     elevation = np.arctan2(points[:, 2], np.hypot(points[:, 0], points[:, 1]))
