@@ -78,6 +78,8 @@ def call(arguments: list[str]) -> int:
     arguments = [a for a in arguments if a != "--debug"]
     try:
         status = app(arguments, prog_name="datmo", standalone_mode=False)
+        if status == STOPPED:
+            raise KeyboardInterrupt  # typer makes an exit status of it before we see it
         return status if isinstance(status, int) else DONE
     except (KeyboardInterrupt, typer.Abort):
         typer.echo("datmo: stopped", err=True)

@@ -17,12 +17,16 @@ from eval.score import Metric
 from eval.sweep import SHOWN, Sweep
 from eval.verdict import Verdict, say_value
 
+WIDE = 120
 LIVE = (("ground.f1", "ground f1"), ("detection.recall", "recall"), ("tracking.gospa", "gospa [m]"))
 
 
 def stdout() -> Console:
-    """Where results go."""
-    return Console(highlight=False, soft_wrap=True)
+    """Where results go; a pipe or a file has room for a whole table."""
+    console = Console(highlight=False, soft_wrap=True)
+    if not console.is_terminal:
+        console.width = max(console.width, WIDE)
+    return console
 
 
 def stderr() -> Console:
@@ -113,7 +117,7 @@ def sweep_table(made: Sweep) -> Table:
     for key in made.keys:
         table.add_column(key.rpartition(".")[2])
     for metric in SHOWN:
-        table.add_column(metric.replace(".", "\n", 1), justify="right")
+        table.add_column(metric.replace(".", "\n").replace("_", "\n"), justify="right", no_wrap=True)
     for row, point in enumerate(made.points):
         table.add_row(*point, *(say_value(made.mean(row, metric)) for metric in SHOWN))
     return table

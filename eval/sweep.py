@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from datmo.config import DatmoConfig
 from datmo.errors import ConfigError
 from eval.episode import episode, scans_to_play
 from eval.output import writing_folder
@@ -67,35 +68,53 @@ class Sweep:
         return float(np.mean(known)) if known else None
 
 
-def sweep(
+def plan(
     scenario: str | Path,
     over: Mapping[str, Sequence[str]],
     seeds: Sequence[int] = (0,),
     frames: int | None = None,
     ground: str | None = None,
     settings: Mapping[str, str] | None = None,
-    workers: int = 1,
-    on_done: Callable[[int], None] | None = None,
-) -> Sweep:
-    """Play the scenario at every combination of values and seeds.
-
-    Every combination is validated before the first is played.
+) -> list[Job]:
+    """An episode for every combination of values and every seed, all validated.
 
     Args:
         scenario: a name or a file. over: key -> values as `--set` takes them.
         seeds: of the episodes. frames: scans an episode. ground: method. settings: for all.
-        workers: processes; the result does not depend on them. on_done: told how many are done.
 
     Raises:
-        ScenarioError: a key or a value does not fit the scenario.
+        ScenarioError: a key or a value does not fit the scenario. ConfigError: no such method.
     """
-    keys = tuple(over)
-    points = list(itertools.product(*over.values()))
-    worlds = [load(scenario, {**(settings or {}), **dict(zip(keys, p, strict=True))}) for p in points]
-    jobs = [Job(world, seed, frames, ground) for world in worlds for seed in seeds]
+    if ground is not None:
+        DatmoConfig().with_ground(ground)
+    worlds = [
+        load(scenario, {**(settings or {}), **dict(zip(over, point, strict=True))})
+        for point in combinations(over)
+    ]
+    return [Job(world, seed, frames, ground) for world in worlds for seed in seeds]
+
+
+def combinations(over: Mapping[str, Sequence[str]]) -> list[tuple[str, ...]]:
+    """The product of the values, the last key running fastest."""
+    return list(itertools.product(*over.values()))
+
+
+def sweep(
+    jobs: Sequence[Job],
+    over: Mapping[str, Sequence[str]],
+    seeds: Sequence[int],
+    workers: int = 1,
+    on_done: Callable[[int], None] | None = None,
+) -> Sweep:
+    """Play the jobs of `plan`.
+
+    Args:
+        jobs, over, seeds: as planned.
+        workers: processes; the result does not depend on them. on_done: told how many are done.
+    """
     results = run_all(score, jobs, workers, on_done)
     rows = [results[i : i + len(seeds)] for i in range(0, len(results), len(seeds))]
-    return Sweep(keys, points, list(seeds), rows)
+    return Sweep(tuple(over), combinations(over), list(seeds), rows)
 
 
 def score(job: Job) -> dict[str, float | None]:

@@ -12,21 +12,22 @@ from datmo.errors import ScenarioError
 from eval.commands import options as o
 
 if TYPE_CHECKING:
+    from eval.report.recording import Recording
     from scenarios.spec import Scenario
 
 SUFFIX = ".scenario.yaml"
+Paths = Annotated[
+    list[str], typer.Argument(metavar="PATH...", help="*.scenario.yaml files, folders of them, or names.")
+]
+Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="Where reports of failures go.")]
 
 
 def check(
-    paths: Annotated[
-        list[str], typer.Argument(metavar="PATH...", help="*.scenario.yaml files, folders of them, or names.")
-    ],
+    paths: Paths,
     seed: o.Seed = 0,
     frames: o.Frames = None,
     ground: o.GroundMethod = None,
-    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where reports of failures go.")] = Path(
-        "runs"
-    ),
+    out: Out = Path("runs"),
 ) -> None:
     """Hold scenarios to their expectations.
 
@@ -43,9 +44,7 @@ def check(
     from rich.markup import escape
 
     from eval import console
-    from eval.output import unused
-    from eval.run import play, replay_line, write
-    from eval.verdict import judge, say_value
+    from eval.run import play
 
     found = collect(paths)
     screen, failures = console.stdout(), 0
@@ -53,19 +52,31 @@ def check(
         start = perf_counter()
         with console.progress(scenario.name, min(frames or scenario.scans, scenario.scans)) as tell:
             recording = play(scenario, seed, frames, ground, console.on_step(tell))
-        failed = [v for v in judge(scenario.expect, recording.metrics) if not v.met]
-        word = "[bold red]FAIL[/]" if failed else "[green]pass[/]"
+        lines = complaint(recording, out)
+        failures += bool(lines)
+        word = "[bold red]FAIL[/]" if lines else "[green]pass[/]"
         screen.print(f"{word}  {escape(source)}  {perf_counter() - start:.1f} s")
-        if failed:
-            failures += 1
-            folder = unused(out / f"{scenario.name}-seed{seed}")
-            write(recording, folder)
-            for v in failed:
-                screen.print(f"      {v.name} is {say_value(v.value)}, expected {v.bound}", markup=False)
-            screen.print(f"      report: {folder / 'report.html'}", markup=False)
-            screen.print(f"      replay: {replay_line(recording, folder / 'config.yaml')}", markup=False)
+        for line in lines:
+            screen.print(f"      {line}", markup=False)
     screen.print(f"{len(found) - failures} passed, {failures} failed")
     raise typer.Exit(1 if failures else 0)
+
+
+def complaint(recording: Recording, out: Path) -> list[str]:
+    """What is not met and how to see it again; writes the report of a failure. Empty for a pass."""
+    from eval.output import unused
+    from eval.run import replay_line, write
+    from eval.verdict import judge, say_value
+
+    failed = [v for v in judge(recording.scenario.expect, recording.metrics) if not v.met]
+    if not failed:
+        return []
+    folder = unused(out / f"{recording.scenario.name}-seed{recording.seed}")
+    write(recording, folder)
+    lines = [f"{v.name} is {say_value(v.value)}, expected {v.bound}" for v in failed]
+    lines.append(f"report: {folder / 'report.html'}")
+    lines.append(f"replay: {replay_line(recording, folder / 'config.yaml')}")
+    return lines
 
 
 def collect(paths: list[str]) -> list[tuple[str, Scenario]]:

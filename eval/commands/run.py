@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import TYPE_CHECKING
+
 import typer
 
 from eval.commands import options as o
+
+if TYPE_CHECKING:
+    from eval.report.recording import Recording
 
 
 def run(
@@ -31,7 +37,6 @@ def run(
     """
     from eval import console
     from eval.run import choose_folder, play, write
-    from eval.verdict import judge
     from scenarios.load import load
 
     what = load(scenario, o.settings(set_))
@@ -39,12 +44,20 @@ def run(
     with console.progress(what.name, min(frames or what.scans, what.scans)) as tell:
         recording = play(what, seed, frames, ground, console.on_step(tell))
     write(recording, folder, force)
-    verdicts = judge(what.expect, recording.metrics)
+    raise typer.Exit(tell_result(recording, folder))
+
+
+def tell_result(recording: Recording, folder: Path) -> int:
+    """Print the table, the verdict and where the report is; returns the exit status."""
+    from eval import console
+    from eval.verdict import judge
+
+    verdicts = judge(recording.scenario.expect, recording.metrics)
+    failed = [v.name for v in verdicts if not v.met]
     screen = console.stdout()
     screen.print(console.metric_table(recording.metrics, verdicts))
-    failed = [v.name for v in verdicts if not v.met]
     if verdicts:
         said = f"not met: {', '.join(failed)}" if failed else f"all {len(verdicts)} met"
         screen.print(f"\nexpectations: {said}")
     screen.print(f"report: {folder / 'report.html'}", markup=False)
-    raise typer.Exit(1 if failed else 0)
+    return 1 if failed else 0

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from eval.commands import options as o
+
+if TYPE_CHECKING:
+    from datmo.arrays import Array
 
 
 def segment(
@@ -28,11 +31,9 @@ def segment(
       datmo segment scan.bin --out scan.label
       datmo segment scan.bin --method z --out scan.label --picture ground.png
     """
-    import numpy as np
-
     from datmo.config import DatmoConfig
     from datmo.pipeline import Datmo
-    from eval import clouds, console
+    from eval import clouds
     from eval.output import refuse_existing, write_file
     from eval.report.recording import encode
     from eval.view import bird_eye
@@ -46,10 +47,19 @@ def segment(
     write_file(out, clouds.label_bytes(label), force)
     if picture is not None:
         write_file(picture, encode(bird_eye(frame), "PNG"), force)
+    tell_counts(label, out)
+
+
+def tell_counts(label: Array, out: Path) -> None:
+    """Print how many points have each label, and where the labels are."""
+    import numpy as np
+
+    from eval import clouds, console
+
     rows = [("ground", clouds.ROAD), ("not ground", clouds.OTHER_OBJECT), ("dropped", clouds.UNLABELLED)]
     counts = [(name, code, int(np.count_nonzero(label == code))) for name, code in rows]
     screen = console.stdout()
     screen.print(console.count_table(counts))
-    if read.dropped:
-        screen.print(f"{read.dropped} points with NaN or infinite coordinates have label 0")
+    if counts[-1][2]:
+        screen.print(f"{counts[-1][2]} points with NaN or infinite coordinates have label 0")
     screen.print(f"labels: {out}", markup=False)

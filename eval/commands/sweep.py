@@ -9,13 +9,16 @@ import typer
 
 from eval.commands import options as o
 
+Over = Annotated[
+    list[str], typer.Option("--over", metavar="KEY=V1,V2", help="Values to go through; repeatable.")
+]
+Seeds = Annotated[str, typer.Option("--seeds", help="One (3), a list (0,4,7) or a range (0..4).")]
+
 
 def sweep(
     scenario: o.Scenario,
-    over: Annotated[
-        list[str], typer.Option("--over", metavar="KEY=V1,V2", help="Values to go through; repeatable.")
-    ],
-    seeds: Annotated[str, typer.Option("--seeds", help="One (3), a list (0,4,7) or a range (0..4).")] = "0",
+    over: Over,
+    seeds: Seeds = "0",
     frames: o.Frames = None,
     ground: o.GroundMethod = None,
     set_: o.Settings = None,
@@ -44,13 +47,9 @@ def sweep(
     base = load(scenario, fixed)
     folder = out or unused(Path("runs") / f"sweep-{base.name}")
     refuse_existing(folder, force)
-    total = len(chosen)
-    for values in grid.values():
-        total *= len(values)
-    with console.progress(f"sweep {base.name}", total) as tell:
-        made = sweeping.sweep(
-            scenario, grid, chosen, frames, ground, fixed, workers, lambda done: tell(done, "")
-        )
+    jobs = sweeping.plan(scenario, grid, chosen, frames, ground, fixed)
+    with console.progress(f"sweep {base.name}", len(jobs)) as tell:
+        made = sweeping.sweep(jobs, grid, chosen, workers, lambda done: tell(done, ""))
     sweeping.write(made, base, folder, force)
     screen = console.stdout()
     screen.print(console.sweep_table(made))

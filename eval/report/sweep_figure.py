@@ -57,6 +57,8 @@ def _panel(axes: Axes, made: Sweep, metric: str) -> None:
     axes.set_xticks(range(len(values)), values)
     axes.set_xlim(-0.3, len(values) - 0.7)
     unit = UNITS[metric]
+    if unit == "count":
+        axes.set_ylim(0, max(1.0, 1.05 * axes.get_ylim()[1]))
     axes.set_title(
         metric + ("" if unit in ("1", "count") else f" [{unit}]"), fontsize=9, color=INK, loc="left"
     )

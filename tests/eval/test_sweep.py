@@ -23,6 +23,17 @@ def made() -> s.Sweep:
     return s.Sweep(("terrain.roughness", "terrain.grade"), points, [0, 3], scores)
 
 
+def test_the_plan_is_the_product_and_its_seeds() -> None:
+    over = {"terrain.grade": ["0", "0.1"], "terrain.roughness": ["A", "E", "G"]}
+    jobs = s.plan("empty-road", over, seeds=[4, 5], settings={"rate": "5"})
+    assert len(jobs) == 12
+    assert {j.scenario.rate for j in jobs} == {5.0}
+    said = [(j.scenario.terrain.grade, j.scenario.terrain.roughness, j.seed) for j in jobs[:5]]
+    assert said == [(0, "A", 4), (0, "A", 5), (0, "E", 4), (0, "E", 5), (0, "G", 4)]
+    with pytest.raises(ConfigError, match="zz"):
+        s.plan("empty-road", over, ground="zz")
+
+
 def test_pairs_and_seeds_are_read() -> None:
     assert s.parse_over(["a.b=1,2", "c=[1,2],{x: 1, y: 2}"]) == {
         "a.b": ["1", "2"],
@@ -64,10 +75,9 @@ def test_the_figure_is_drawn_also_without_anything_to_measure() -> None:
         assert sweep_figure(sweep)[:4] == b"\x89PNG"
 
 
-def test_a_wrong_value_is_said_before_anything_is_played(monkeypatch) -> None:
-    monkeypatch.setattr(s, "make_testbed", lambda *_, **__: pytest.fail("played"))
+def test_a_wrong_value_is_said_before_anything_is_played() -> None:
     with pytest.raises(ScenarioError, match="Z"):
-        s.sweep("empty-road", {"terrain.roughness": ["A", "Z"]})
+        s.plan("empty-road", {"terrain.roughness": ["A", "Z"]})
 
 
 def test_workers_do_not_change_the_scores(tiny: Scenario, tmp_path) -> None:
@@ -75,8 +85,9 @@ def test_workers_do_not_change_the_scores(tiny: Scenario, tmp_path) -> None:
     path.write_text(dump(tiny))
     told: list[int] = []
     over = {"terrain.roughness": ["A", "G"]}
-    alone = s.sweep(path, over, seeds=[1], frames=2, on_done=told.append)
-    both = s.sweep(path, over, seeds=[1], frames=2, workers=2, on_done=told.append)
+    jobs = s.plan(path, over, seeds=[1], frames=2)
+    alone = s.sweep(jobs, over, [1], on_done=told.append)
+    both = s.sweep(jobs, over, [1], workers=2, on_done=told.append)
     assert told == [1, 2, 1, 2]
     assert s.to_csv(alone) == s.to_csv(both)
     assert alone.scores[0] != alone.scores[1]
