@@ -119,29 +119,41 @@ class RightOfWay:
 
     Attributes:
         held: what each owner has for certain; disjoint among vehicles.
-        ahead: what a vehicle will reach before it could stop at ease; walkers do not step there.
+        brake: what a vehicle would still pass if it braked firmly; part of what it holds.
+        ahead: what it would still pass if it braked at ease.
         crossing: the whole way through a crossing of those who were let in.
     """
 
     held: dict[int, Claim] = field(default_factory=dict)
+    brake: dict[int, Claim] = field(default_factory=dict)
     ahead: dict[int, Claim] = field(default_factory=dict)
     crossing: dict[int, Claim] = field(default_factory=dict)
 
     def place(self, owner: int, claim: Claim) -> None:
         """Claim ground for someone who does not ask: a walker, a script, a parked thing."""
         self.held[owner] = claim
+        if not claim.walker:
+            self.brake[owner] = claim
 
     def keep(self, owners: Iterable[int]) -> None:
         """Forget everyone else."""
         known = set(owners)
-        for claims in (self.held, self.ahead, self.crossing):
+        for claims in (self.held, self.brake, self.ahead, self.crossing):
             for owner in set(claims) - known:
                 del claims[owner]
 
-    def free(self, claim: Claim, asking: int) -> bool:
-        """Whether nobody has, or is about to reach, the ground of a claim."""
-        others = [c for claims in (self.held, self.ahead) for o, c in claims.items() if o != asking]
-        return not any(_touch(claim, other) for other in others)
+    def free(self, claim: Claim) -> bool:
+        """Whether nobody holds, or is about to reach, the ground of a claim."""
+        return not any(_touch(claim, c) for c in (*self.held.values(), *self.ahead.values()))
+
+    def may_step(self, claim: Claim, at_ease: bool) -> bool:
+        """Whether no vehicle is too near to stop before the ground of a walker's claim.
+
+        At ease, vehicles in a crossing must be able to leave it, and others to stop comfortably.
+        """
+        courtesy = (*self.held.values(), *self.ahead.values()) if at_ease else ()
+        near = (*self.brake.values(), *(c for c in courtesy if not c.walker))
+        return not any(_touch(claim, c) for c in near)
 
     def decide(self, movers: Sequence[Mover], dt: float) -> dict[int, float]:
         """The acceleration of each mover [m/s²] for the next `dt` seconds; claims move along."""
@@ -157,7 +169,8 @@ class RightOfWay:
         a = choose(mover, limit, dt)
         after = max(mover.speed + a * dt, 0.0)
         zone = mover.zone[2] if mover.zone and mover.id in self.crossing else -1
-        reach = max(mover.speed * dt + braking(after, FIRM), 0.0)
+        reach = mover.speed * dt + braking(after, FIRM)
+        self.brake[mover.id] = stretch(mover, 0.0, mover.length + min(reach, free))
         if mover.id in self.crossing and mover.zone:
             reach = max(reach, mover.zone[1])
         self.held[mover.id] = stretch(mover, 0.0, mover.length + min(reach, free), zone)

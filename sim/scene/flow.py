@@ -105,7 +105,7 @@ class Traffic:
     def arrived(self) -> bool:
         """Whether the ego has reached the end of the road as highway-env made it."""
         lane = self._lanes[self.ego.lane_index]
-        if self.scenario.ego.control == "parked" or not lane.leaving:
+        if not lane.leaving or lane.key == self._highway.first:
             return False
         along = self.ego.lane.local_coordinates(self.ego.position)[0]
         return bool(along >= lane.length - EXTEND - PAST_END)

@@ -22,6 +22,7 @@ FIRST_ID = 101
 RADIUS = 0.4  # ground a walker needs [m]
 KERB = 0.3  # a road begins this far beyond its edge [m]
 WAIT_AT = 0.4  # a walker waits this far before that [m]
+PATIENCE = 5.0  # after it, only vehicles that could not stop any more are waited for [s]
 REST = 1.0  # at either end of a walk [s]
 ACCELERATION = 1.5  # [m/s²]
 TURNING = 3.0  # [rad/s]
@@ -63,12 +64,13 @@ class Walker:
         self.along, self.speed, self.way, self.rest = 0.0, 0.0, 1, walk.begin
         self.yaw, self.walked = float(np.arctan2(self.ahead[1], self.ahead[0])), 0.0
         self.allowed: tuple[float, float] | None = None
-        self.yaw_rate = 0.0
+        self.yaw_rate = self.waited = 0.0
         self._crossings = self._find_crossings(roads)
 
     def step(self, dt: float, right_of_way: RightOfWay) -> None:
         """Walk for `dt` seconds, and claim the ground to be walked on."""
         limit = self._limit(right_of_way)
+        self.waited = self.waited + dt if self.rest == 0 and self.speed < 0.05 else 0.0
         stopping = np.sqrt(2 * ACCELERATION * max(limit, 0.0))
         wish = 0.0 if self.rest > 0 or self.walk.behaviour == "waiting" else min(self.pace, stopping)
         change = float(np.clip(wish - self.speed, -2 * ACCELERATION * dt, ACCELERATION * dt))
@@ -111,7 +113,8 @@ class Walker:
             if self.along >= end or self.along > start - WAIT_AT / 2 or self.allowed == (start, end):
                 continue
             near = self.along > start - WAIT_AT - 1.0 and self.rest == 0
-            if near and right_of_way.free(self._ground(self.along, end), self.name):
+            at_ease = self.waited < PATIENCE
+            if near and right_of_way.may_step(self._ground(self.along, end), at_ease):
                 self.allowed = start, end
                 continue
             return start - WAIT_AT - self.along

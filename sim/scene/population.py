@@ -77,12 +77,12 @@ class Population:
             start: (2,) of the ego at the first scan [m, world]. direction: (2,) in which it goes.
         """
         later = start + AHEAD * direction
-        near = self._places.within(later, 0, self._reach - 10) & ~clear
-        both = near & self._places.within(start, 0, self._reach - 10)
         most = self._count + SPARE if self._count else 0
-        found = self._fill(self._places.within(start, 0, self._reach - 5) & self._places.towards(start) & ~near & ~clear, 2 if most else 0)
-        found += self._fill(both, most // 2)
-        found += self._fill(near & self._places.towards(later), most - len(found))
+        here = self._places.within(start, 0, self._reach - 10) & ~clear
+        there = self._places.within(later, 0, self._reach - 10) & ~clear
+        found = self._fill(here & ~there & self._places.towards(start), most // 6)  # behind the ego
+        found += self._fill(here & there, most // 2)
+        found += self._fill(there & self._places.towards(later), most - len(found))
         return [*found, *self.refill(start, 0, clear)]
 
     def gone(self, distance: float) -> bool:
@@ -132,7 +132,7 @@ class Population:
         mover = asking(made.id, looks, course, arc - looks.length / 2, speed, 0.0, 0.0, False)
         need = looks.length + braking(speed, FIRM) + GAP
         claim = stretch(mover, 0.0, need)
-        if (mover.zone and mover.zone[0] < need) or not self._way.free(claim, made.id):
+        if (mover.zone and mover.zone[0] < need) or not self._way.free(claim):
             return []
         self._way.place(made.id, claim)
         return [made]

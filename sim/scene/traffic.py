@@ -39,6 +39,7 @@ EXTEND = 200.0
 """Roads that end are made longer by this much [m]."""
 
 EGO_ID = 0
+JOINT = 3.0  # lanes whose ends are farther apart are not joined [m]
 FAR = 2000.0  # courses are at least this long where the road allows [m]
 _IDM = {"DISTANCE_WANTED": 10.0, "COMFORT_ACC_MAX": 3.0, "COMFORT_ACC_MIN": -5.0}
 """Of highway-env's IDM; its intersection leaves them changed for every environment of the process."""
@@ -61,7 +62,7 @@ class Driver(IDMVehicle):  # type: ignore[misc]
     """An IDM driver that keeps to a course of lanes; it never turns round at the end of the road."""
 
     ACC_MAX = 5.0
-    COMFORT_ACC_MAX = 2.5
+    COMFORT_ACC_MAX = 3.0
     COMFORT_ACC_MIN = -3.0
     DISTANCE_WANTED = 8.0
     TIME_WANTED = 1.0
@@ -160,8 +161,8 @@ def extend(network: RoadNetwork) -> dict[Key, Lane]:
     starts = np.array([lane.position(0, 0) for lane in lanes.values()])
     listed: dict[Key, tuple[bool, bool]] = {}
     for key, lane in lanes.items():
-        entry = bool(np.hypot(*(ends - lane.position(0, 0)).T).min() > 1.0)
-        leaving = bool(np.hypot(*(starts - lane.position(lane.length, 0)).T).min() > 1.0)
+        entry = bool(np.hypot(*(ends - lane.position(0, 0)).T).min() > JOINT)
+        leaving = bool(np.hypot(*(starts - lane.position(lane.length, 0)).T).min() > JOINT)
         listed[key] = entry, leaving
         if type(lane) is StraightLane and (entry or leaving):
             a = lane.position(-EXTEND if entry else 0.0, 0)
