@@ -136,7 +136,8 @@ def metrics_csv(metrics: list[Metric]) -> str:
 
 def stage_times(env: Testbed, info: dict[str, Any]) -> dict[str, float]:
     """Milliseconds of traffic, cast and each stage of perception, in the order in which they run."""
-    return {**env.lidar.milliseconds, **info["frame"].milliseconds}
+    world = env.lidar.milliseconds
+    return {name: world[name] for name in ("traffic", "cast") if name in world} | info["frame"].milliseconds
 
 
 def _plain(value: Any) -> Any:

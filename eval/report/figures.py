@@ -34,7 +34,7 @@ def height_error(heights: HeightMap) -> bytes:
 
 def stage_times(moments: list[Moment]) -> bytes:
     """Milliseconds of each stage over time, stacked in the order in which they run."""
-    names = list(dict.fromkeys(name for m in moments for name in m.milliseconds))
+    names = list(max((m.milliseconds for m in moments), key=len))  # the first frame has no traffic
     stamp = np.array([m.stamp for m in moments])
     times = np.array([[m.milliseconds.get(name, 0.0) for m in moments] for name in names])
     made, axes = figure(WIDTH, 3.2)
@@ -46,6 +46,7 @@ def stage_times(moments: list[Moment]) -> bytes:
         base += times[i]
     top = float(np.quantile(base, 0.98)) * 1.15 if len(base) else 1.0
     axes.set_ylim(0, max(top, 1e-3))  # the first frame may compile kernels; it runs off the top
+    axes.margins(x=0.005)
     axes.set_xlabel("time [s]")
     axes.set_ylabel("time of a step [ms]")
     axes.grid(axis="y", color=GRID, linewidth=0.8)
