@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from datmo.messages import Frame
 from eval import facts
 from eval.episode import episode, scans_to_play
 from eval.output import refuse_existing, unused, writing_folder
@@ -136,8 +137,9 @@ def metrics_csv(metrics: list[Metric]) -> str:
 
 def stage_times(env: Testbed, info: dict[str, Any]) -> dict[str, float]:
     """Milliseconds of traffic, cast and each stage of perception, in the order in which they run."""
+    frame: Frame = info["frame"]
     world = env.lidar.milliseconds
-    return {name: world[name] for name in ("traffic", "cast") if name in world} | info["frame"].milliseconds
+    return {name: world[name] for name in ("traffic", "cast") if name in world} | frame.milliseconds
 
 
 def _plain(value: Any) -> Any:

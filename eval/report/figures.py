@@ -34,7 +34,7 @@ def height_error(heights: HeightMap) -> bytes:
 
 def stage_times(moments: list[Moment]) -> bytes:
     """Milliseconds of each stage over time, stacked in the order in which they run."""
-    names = list(max((m.milliseconds for m in moments), key=len))  # the first frame has no traffic
+    names = max((list(m.milliseconds) for m in moments), key=len)  # the first frame has no traffic
     stamp = np.array([m.stamp for m in moments])
     times = np.array([[m.milliseconds.get(name, 0.0) for m in moments] for name in names])
     made, axes = figure(WIDTH, 3.2)
