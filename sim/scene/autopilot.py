@@ -27,6 +27,7 @@ FIRM = 3.5  # braking that claims are made for [m/s²]
 HARD = 5.0  # most braking [m/s²]
 REACT = 0.25  # [s]
 JERK = 12.0  # of usual driving [m/s³]
+FORESIGHT = 1.5  # who goes first asks this much earlier [s]
 TAU = 0.5  # of the approach to the allowed speed [s]
 
 
@@ -105,7 +106,7 @@ def braking(speed: float, deceleration: float) -> float:
 def choose(mover: Mover, free: float, dt: float) -> float:
     """The acceleration [m/s²] that gets on, comfortably where it can, within `free` metres."""
     allowed = np.sqrt(2 * COMFORT * max(free - GAP, 0.0))
-    a = min(mover.wish, (allowed - mover.speed) / TAU)
+    a = min(mover.wish, (allowed - mover.speed) / TAU - COMFORT)  # follows `allowed` down without lag
     a = float(np.clip(a, mover.before - JERK * dt, mover.before + JERK * dt))
     after = max(mover.speed + a * dt, 0.0)
     if mover.speed * dt + braking(after, FIRM) > free:
@@ -121,7 +122,7 @@ class RightOfWay:
         held: what each owner has for certain; disjoint among vehicles.
         brake: what a vehicle would still pass if it braked firmly; part of what it holds.
         ahead: what it would still pass if it braked at ease.
-        crossing: the whole way through a crossing of those who were let in.
+        crossing: the rest of the way through a crossing of those who were let in.
     """
 
     held: dict[int, Claim] = field(default_factory=dict)
@@ -179,11 +180,14 @@ class RightOfWay:
 
     def _cross(self, mover: Mover, others: Sequence[Claim], look: float, waiting: list[Claim]) -> bool:
         """Whether the mover has to wait before the next crossing; if let in, it is noted."""
-        if mover.zone is None or mover.length + look < mover.zone[0]:
+        early = FORESIGHT * mover.speed if mover.first else 0.0
+        if mover.zone is None or mover.length + look + early < mover.zone[0]:
             self.crossing.pop(mover.id, None)
             return False
         start, end, name = mover.zone
-        if mover.length > start:  # inside
+        if mover.length > start:  # inside; what lies behind is free again
+            if mover.id in self.crossing:
+                self.crossing[mover.id] = stretch(mover, 0.0, end + mover.length, name)
             return False
         whole = stretch(mover, start, end + mover.length, name)
         inside = [c for owner, c in self.crossing.items() if owner != mover.id]
@@ -196,7 +200,7 @@ class RightOfWay:
             return False  # let in before, and too late to stop
         self.crossing.pop(mover.id, None)
         waiting.append(whole)
-        return True
+        return mover.length + look >= start
 
 
 def _rank(mover: Mover) -> tuple[bool, float, int]:

@@ -79,7 +79,7 @@ class Walker:
         self.along = min(self.along + moved, self.length)
         self.walked += moved
         self.rest = max(self.rest - dt, 0.0)
-        if self.length - self.along < 0.02 and self.walk.behaviour != "waiting":
+        if self.length - self.along < 0.02 and self.speed < 0.1 and self.walk.behaviour != "waiting":
             self._turn_back()
         self._turn(dt)
         right_of_way.place(self.name, self.claim())
