@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from importlib.metadata import entry_points
 from pathlib import Path
 
 import pytest
@@ -28,7 +29,9 @@ def put(folder: Path, name: str, **expect: dict[str, float]) -> None:
 
 
 def run_pytest(pytester: pytest.Pytester, *arguments: str) -> pytest.RunResult:
-    return pytester.runpytest_inprocess("-p", "eval.pytest_plugin", *arguments)
+    installed = any(e.name == "datmo" for e in entry_points(group="pytest11"))
+    plugin = () if installed else ("-p", "eval.pytest_plugin")
+    return pytester.runpytest_inprocess(*plugin, *arguments)
 
 
 def test_files_pass_and_fail_by_what_they_expect(played: pytest.Pytester) -> None:
