@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from eval import run  # now: pytester forgets what a test is the first to import
 from scenarios.load import dump
 from scenarios.spec import Scenario
 
@@ -16,8 +17,6 @@ pytest_plugins = ("pytester",)
 @pytest.fixture
 def played(pytester: pytest.Pytester, stage_testbed, monkeypatch) -> pytest.Pytester:
     """Scenario files are played on the stand-in test-bed, in this process."""
-    import eval.run as run
-
     real = run.play
     monkeypatch.setattr(run, "play", lambda scenario, seed: real(scenario, seed, make=stage_testbed))
     return pytester
