@@ -13,8 +13,8 @@ from rich.table import Table
 
 from datmo.arrays import I64
 from datmo.messages import Boxes
+from eval.report.sweep_table import SHOWN, Sweep
 from eval.score import Metric
-from eval.sweep import SHOWN, Sweep
 from eval.verdict import Verdict, say_value
 
 WIDE = 120

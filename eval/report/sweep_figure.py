@@ -10,7 +10,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from eval.report.style import DPI, GRID, INK, SERIES, plain, png
-from eval.sweep import SHOWN, Sweep
+from eval.report.sweep_table import SHOWN, Sweep
 from scenarios.expect import UNITS
 
 COLUMNS = 4
