@@ -82,7 +82,7 @@ class Actor(Model):
 
 
 class Thing(Model):
-    """Static scenery (from step 2 on: trees, poles, walls, buildings)."""
+    """Static scenery that stands on the terrain."""
 
     kind: Literal["pole", "wall"]
     at: Point = Field(description="[m, world]")
