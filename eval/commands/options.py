@@ -9,13 +9,28 @@ import typer
 
 from datmo.errors import ConfigError
 
+
+def known_method(name: str | None) -> str | None:
+    """The name of a ground method, checked before any work begins.
+
+    Raises:
+        ConfigError: there is no such method.
+    """
+    if name is not None:
+        from datmo.config import DatmoConfig
+
+        DatmoConfig().with_ground(name)
+    return name
+
+
 Scenario = Annotated[str, typer.Argument(metavar="SCENARIO", help="A name (see datmo list) or a YAML file.")]
 Seed = Annotated[int, typer.Option("--seed", min=0, help="Seed of the episode.")]
 Frames = Annotated[
     int | None, typer.Option("--frames", min=1, help="Scans to play; the whole scenario by default.")
 ]
 GroundMethod = Annotated[
-    str | None, typer.Option("--ground", metavar="METHOD", help="Ground method; z by default.")
+    str | None,
+    typer.Option("--ground", metavar="METHOD", callback=known_method, help="Ground method; z by default."),
 ]
 Settings = Annotated[
     list[str] | None,
