@@ -14,7 +14,7 @@ from sim.scene.motion import Poses
 from sim.scene.world import World, around, clip
 
 ROUGH = load("rough-crossing", {"terrain.cell": "2.0"})
-SEEDS = (0, 1, 2)
+SEEDS = tuple(range(20))
 
 
 def play(scenario: Scenario, seed: int, scans: int | None = None) -> tuple[World, list[Poses]]:
@@ -119,7 +119,7 @@ def test_three_pedestrians_cross_the_roads(episodes: Episodes, seed: int) -> Non
 
 def test_the_ego_gets_through(episodes: Episodes) -> None:
     ends = [poses[-1].T_world_ego[-1, 1, 3] for _, poses in episodes.values()]
-    assert min(ends) > 11
+    assert min(ends) > 10  # the other road ends at 6; a walker may hold the ego at 15
     assert not any(world.arrived for world, _ in episodes.values())
 
 
