@@ -18,6 +18,7 @@ from eval.score import Metric
 from eval.verdict import Verdict, say_value
 
 WIDE = 120
+ROWS = 25  # boxes shown
 LIVE = (("ground.f1", "ground f1"), ("detection.recall", "recall"), ("tracking.gospa", "gospa [m]"))
 
 
@@ -101,11 +102,12 @@ def count_table(rows: Sequence[tuple[str, int, int]]) -> Table:
 
 
 def box_table(boxes: Boxes, points: I64) -> Table:
-    """Boxes from near to far."""
+    """The nearest `ROWS` boxes, from near to far."""
     table = Table(box=None, pad_edge=False, header_style="bold")
     for name in ("x [m]", "y [m]", "length [m]", "width [m]", "height [m]", "yaw [deg]", "points", "score"):
         table.add_column(name, justify="right")
-    for i in np.argsort(np.hypot(boxes.center[:, 0], boxes.center[:, 1]), kind="stable"):
+    near = np.argsort(np.hypot(boxes.center[:, 0], boxes.center[:, 1]), kind="stable")
+    for i in near[:ROWS]:
         numbers = [*boxes.center[i, :2], *boxes.size[i], np.degrees(boxes.yaw[i])]
         table.add_row(*(f"{v:.1f}" for v in numbers), str(points[i]), f"{boxes.score[i]:.2f}")
     return table

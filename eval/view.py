@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from datmo.arrays import F64, U8, Array
-from datmo.messages import Frame, Status, Truth
+from datmo.arrays import F64, U8, Array, Bool
+from datmo.messages import Frame, Scan, Status, Truth
 from sim.picture import palette
 from sim.picture.birdseye import (
     PIXELS,
@@ -58,6 +58,16 @@ def bird_eye(
     for corners in flat.outlines(frame.boxes):
         raster.line(corners, palette.DETECTION, width, alpha, closed=True)
     _draw_tracks(raster, flat, frame, tails or {})
+    draw_ego(raster)
+    return raster.image
+
+
+def ground_eye(scan: Scan, is_ground: Bool, radius: float = RADIUS, pixels: int = PIXELS) -> U8:
+    """The picture (pixels, pixels, 3) of a segmentation: ground grey-brown, the rest in one colour."""
+    raster = Raster(pixels, radius)
+    draw_rings(raster)
+    draw_cloud(raster, scan, is_ground, np.full(len(scan), palette.REST, np.uint8))
+    draw_ranges(raster)
     draw_ego(raster)
     return raster.image
 

@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from datmo.arrays import I64
+from datmo.messages import Boxes
 from eval.commands import options as o
 
 
@@ -29,7 +31,7 @@ def detect(
     """
     from datmo.config import DatmoConfig
     from datmo.pipeline import Datmo
-    from eval import clouds, console
+    from eval import clouds
     from eval.output import refuse_existing, write_file
     from eval.report.recording import encode
     from eval.view import bird_eye
@@ -45,8 +47,17 @@ def detect(
     write_file(out, text.encode(), force)
     if picture is not None:
         write_file(picture, encode(bird_eye(frame), "PNG"), force)
+    tell_boxes(frame.boxes, points, read.dropped, out)
+
+
+def tell_boxes(boxes: Boxes, points: I64, dropped: int, out: Path) -> None:
+    """Print the nearest boxes and where all are."""
+    from eval import console
+
     screen = console.stdout()
-    screen.print(console.box_table(frame.boxes, points))
-    if read.dropped:
-        screen.print(f"{read.dropped} points with NaN or infinite coordinates were left out")
-    screen.print(f"{len(frame.boxes)} boxes: {out}", markup=False)
+    screen.print(console.box_table(boxes, points))
+    if len(boxes) > console.ROWS:
+        screen.print(f"and {len(boxes) - console.ROWS} farther ones")
+    if dropped:
+        screen.print(f"{dropped} points with NaN or infinite coordinates were left out")
+    screen.print(f"{len(boxes)} boxes: {out}", markup=False)

@@ -32,21 +32,24 @@ def segment(
       datmo segment scan.bin --method z --out scan.label --picture ground.png
     """
     from datmo.config import DatmoConfig
-    from datmo.pipeline import Datmo
+    from datmo.ground import segment_ground
+    from datmo.refine import refine
     from eval import clouds
     from eval.output import refuse_existing, write_file
     from eval.report.recording import encode
-    from eval.view import bird_eye
+    from eval.view import ground_eye
 
     for path in (out, picture):
         if path is not None:
             refuse_existing(path, force)
     read = clouds.read_bin(cloud)
-    frame = Datmo(DatmoConfig().with_ground(method)).step(read.scan)
-    label = clouds.labels(frame.ground.is_ground, read.kept)
+    config = DatmoConfig().with_ground(method)
+    keep = refine(read.scan, config.refine)
+    ground = segment_ground(read.scan.points, config=config.ground, keep=keep)
+    label = clouds.labels(ground.is_ground, read.kept)
     write_file(out, clouds.label_bytes(label), force)
     if picture is not None:
-        write_file(picture, encode(bird_eye(frame), "PNG"), force)
+        write_file(picture, encode(ground_eye(read.scan, ground.is_ground), "PNG"), force)
     tell_counts(label, out)
 
 

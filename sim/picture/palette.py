@@ -11,6 +11,7 @@ from datmo.messages import Kind
 
 Colour = tuple[int, int, int]
 RAMP = 64
+REST = 64  # the first code of the clusters, where all that is not ground has one colour
 GOLDEN = 0.61803398875
 
 KIND: dict[Kind, Colour] = {
