@@ -21,17 +21,25 @@ from datmo.tracks import Tracker
 class Datmo:
     """Detection and tracking of moving objects; one instance follows one sensor through time.
 
-    Any HDL-64 cloud will do, real ones too: `Datmo().step(Scan(points=xyz))`.
+    Any HDL-64 cloud will do, real ones too: `Datmo().step(Scan(points=xyz))`. A scan whose stamp does
+    not follow the last one begins a new sequence: the tracks end, and `Frame.notes` says so.
     """
 
     def __init__(self, config: DatmoConfig | None = None) -> None:
         self.config = config or DatmoConfig()
         self.ground = GroundSegmenter(self.config.ground)
         self.tracker = Tracker(self.config.tracks)
+        self._stamp = -np.inf
+
+    def reset(self) -> None:
+        """Forget every track; the next scan begins a new sequence."""
+        self.tracker.reset()
+        self._stamp = -np.inf
 
     def step(self, scan: Scan) -> Frame:
         """One scan in, everything known after it out."""
         clock = Stopwatch()
+        notes = self._follow(scan.stamp)
         keep = refine(scan, self.config.refine)
         clock.lap("refine")
         ground = self.ground.step(scan.points, keep)
@@ -49,8 +57,17 @@ class Datmo:
         sight = make_sight(scan, keep)
         tracks = self.tracker.step(boxes, scan.stamp, sight)
         clock.lap("tracks")
-        notes = self.tracker.notes | {f"cluster {r.cluster}": str(r) for r in rejected}
+        notes |= self.tracker.notes | {f"cluster {r.cluster}": str(r) for r in rejected}
         return Frame(scan, ground, clusters, boxes, tracks, clock.milliseconds, notes)
+
+    def _follow(self, stamp: float) -> dict[str, str]:
+        """Begin a new sequence where time does not go on."""
+        last, notes = self._stamp, {}
+        if stamp <= last:
+            self.reset()
+            notes["sequence"] = f"stamp {stamp} s does not follow {last} s: a new sequence, all tracks ended"
+        self._stamp = stamp
+        return notes
 
 
 class Stopwatch:

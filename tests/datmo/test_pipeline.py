@@ -58,6 +58,18 @@ def test_the_same_scans_give_the_same_frames(real_data: Path) -> None:
     assert play() == play()
 
 
+def test_time_that_does_not_go_on_begins_a_new_sequence() -> None:
+    car = np.random.default_rng(2).uniform([8, -1, -1.7], [12, 1, -0.2], (300, 3))
+    datmo = Datmo()
+    for k in range(3):
+        frame = datmo.step(Scan(points=car, stamp=k / 10))
+        assert "sequence" not in frame.notes
+    grown = frame.tracks.status.max()
+    frame = datmo.step(Scan(points=car, stamp=0.1))
+    assert "does not follow" in frame.notes["sequence"]
+    assert frame.tracks.status.max() < grown
+
+
 @pytest.mark.parametrize("n", [0, 1, 7])
 def test_hardly_any_points_are_no_trouble(n: int) -> None:
     frame = Datmo().step(Scan(points=np.full((n, 3), 5.0)))
