@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from datmo.arrays import F32, F64, U8
+from datmo.errors import MessageError
 from datmo.messages.base import Message
 
 
@@ -27,7 +28,7 @@ class Scan(Message):
         dt: (n,) firing time relative to `stamp` [s], <= 0.
 
     Raises:
-        MessageError: a field has the wrong shape or type.
+        MessageError: a field has the wrong shape or type, or the stamp or the pose is not finite.
     """
 
     points: F32
@@ -46,6 +47,12 @@ class Scan(Message):
         self._set("intensity", (n,), np.float32, 0)
         self._set("ring", (n,), np.uint8, 0)
         self._set("dt", (n,), np.float32, 0)
+
+        if not (np.isfinite(self.stamp) and np.isfinite(self.T_world_sensor).all()):
+            raise MessageError(
+                f"Scan has stamp {self.stamp} s and T_world_sensor {self.T_world_sensor.tolist()}; both must "
+                "be finite; leave out scans without a time or a pose"
+            )
 
     def __len__(self) -> int:
         return len(self.points)
