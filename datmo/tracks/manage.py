@@ -63,9 +63,13 @@ def duplicates(bank: Bank, mean: F64, config: TrackerConfig) -> Bool:
 
 
 def judge_motion(bank: Bank, mean: F64, P: F64, hit: Bool, stamp: float, config: TrackerConfig) -> None:
-    """Static or dynamic (Alg. 4) from the last `window` seconds; the undecided keep their label."""
+    """Static or dynamic (Alg. 4) from the last `window` seconds; the undecided keep their label.
+
+    A track younger than that may already be called dynamic, by a displacement beyond its doubt.
+    """
     recent = bank.past[:, :, 0] >= stamp - config.window - 1e-6
-    enough = hit & (stamp - bank.born >= config.window) & (recent.sum(axis=1) >= 3)
+    judged = hit & (recent.sum(axis=1) >= 3)
+    enough = judged & (stamp - bank.born >= config.window)
     count = np.maximum(recent.sum(axis=1), 1)
     speed = np.where(recent, np.abs(bank.past[:, :, 3]), 0).sum(axis=1) / count
     first = np.argmax(recent, axis=1)
@@ -75,10 +79,9 @@ def judge_motion(bank: Bank, mean: F64, P: F64, hit: Bool, stamp: float, config:
     sure = 3 * np.sqrt(P[:, 0, 0] + P[:, 1, 1]) + 0.2
     displacement = np.linalg.norm(moved, axis=1)
     static = (speed < config.static_speed) & (displacement <= sure)
-    dynamic = (displacement / span >= config.static_speed) & (displacement > sure) | (
-        speed >= 2 * config.static_speed
-    )
-    bank.dynamic = np.where(enough & static, False, np.where(enough & dynamic, True, bank.dynamic))
+    left = judged & (displacement / span >= config.static_speed) & (displacement > sure)
+    dynamic = left | enough & (speed >= 2 * config.static_speed)
+    bank.dynamic = np.where(enough & static, False, np.where(dynamic, True, bank.dynamic))
 
 
 def turn_around(bank: Bank, mean: F64, dt: float) -> None:

@@ -55,6 +55,7 @@ def judge(sight: Sight, places: F64, depth: F64, slack: float = SLACK) -> tuple[
     """
     distance, near, far = sight.look(places)
     known = np.isfinite(near)
-    hidden = known & (np.where(known, far, np.inf) < distance - depth - slack)
+    within = distance <= sight.far.max(initial=0)  # beyond all that was seen nothing hides: it has left
+    hidden = known & within & (np.where(known, far, np.inf) < distance - depth - slack)
     empty = known & (np.where(known, near, -np.inf) > distance + depth + slack)
     return hidden, empty, known
