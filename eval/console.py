@@ -87,7 +87,8 @@ def metric_table(metrics: Sequence[Metric], verdicts: Sequence[Verdict]) -> Tabl
 def _expected(verdict: Verdict | None) -> str:
     if verdict is None:
         return ""
-    return f"{verdict.bound}  " + ("[green]met[/]" if verdict.met else "[bold red]not met[/]")
+    colour = "green" if verdict.met else "bold red" if verdict.failed else "yellow"
+    return f"{verdict.bound}  [{colour}]{verdict.word}[/]"
 
 
 def count_table(rows: Sequence[tuple[str, int, int]]) -> Table:

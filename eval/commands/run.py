@@ -52,12 +52,14 @@ def tell_result(recording: Recording, folder: Path) -> int:
     from eval import console
     from eval.verdict import judge
 
-    verdicts = judge(recording.scenario.expect, recording.metrics)
-    failed = [v.name for v in verdicts if not v.met]
+    verdicts = judge(recording.scenario.expect, recording.metrics, recording.whole)
+    failed = [v.name for v in verdicts if v.failed]
+    still = [v.name for v in verdicts if v.open]
     screen = console.stdout()
     screen.print(console.metric_table(recording.metrics, verdicts))
     if verdicts:
-        said = f"not met: {', '.join(failed)}" if failed else f"all {len(verdicts)} met"
+        said = f"not met: {', '.join(failed)}" if failed else f"all {len(verdicts) - len(still)} met"
+        said += f"; open, as the run was cut short: {', '.join(still)}" if still else ""
         screen.print(f"\nexpectations: {said}")
     screen.print(f"report: {folder / 'report.html'}", markup=False)
     return 1 if failed else 0

@@ -42,7 +42,7 @@ def page(recording: Recording, figures: Mapping[str, bytes], replay: str, facts:
         facts: "versions" and "hardware", as written to metrics.json.
     """
     scenario = recording.scenario
-    verdicts = judge(scenario.expect, recording.metrics)
+    verdicts = judge(scenario.expect, recording.metrics, recording.whole)
     kind, sentence = say_verdict(verdicts)
     stamps = [stamp for stamp, _ in recording.pictures]
     pause = 1000 * float(np.median(np.diff(stamps))) if len(stamps) > 1 else 1000.0
@@ -74,7 +74,10 @@ def say_verdict(verdicts: list[Verdict]) -> tuple[str, str]:
     """Class ("good", "bad" or "") and one sentence in HTML."""
     if not verdicts:
         return "", "The scenario expects nothing."
-    failed = [v for v in verdicts if not v.met]
+    failed = [v for v in verdicts if v.failed]
+    waiting = sum(v.open for v in verdicts)
+    if not failed and waiting:
+        return "", f"{len(verdicts) - waiting} expectations are met, {waiting} open: the run was cut short."
     if not failed:
         return "good", f"<b>All {len(verdicts)} expectations are met.</b>"
     what = "; ".join(f"{escape(v.name)} is {say_value(v.value)}, expected {escape(v.bound)}" for v in failed)
@@ -100,8 +103,8 @@ def _rows(recording: Recording, verdicts: list[Verdict]) -> str:
             rows.append(f'<tr class="group"><td colspan="5">{escape(group)}</td></tr>')
         verdict = held.get(metric.name)
         bound = escape(verdict.bound) if verdict else ""
-        mark = "" if verdict is None else ("met" if verdict.met else "not met")
-        kind = "" if verdict is None else ("good" if verdict.met else "bad")
+        mark = "" if verdict is None else verdict.word
+        kind = "" if verdict is None else ("good" if verdict.met else "bad" if verdict.failed else "")
         unit = "" if metric.unit == "1" else escape(metric.unit)
         rows.append(
             f"<tr><td>{escape(rest)}</td>"

@@ -62,6 +62,11 @@ class Recording:
     _partner: dict[int, int] = field(default_factory=dict)
 
     @property
+    def whole(self) -> bool:
+        """Whether the scenario was to be played to its end."""
+        return self.frames >= self.scenario.scans
+
+    @property
     def every(self) -> int:
         """Frames between two pictures."""
         return max(1, -(-self.frames // PICTURES))

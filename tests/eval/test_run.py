@@ -13,6 +13,7 @@ from eval.report.heights import HeightMap
 from eval.report.recording import PICTURES, Recording
 from eval.report.timeline import _history, _runs
 from eval.run import choose_folder, play, replay_line, write
+from eval.score import Metric
 from eval.verdict import judge, say_value, within
 from scenarios.expect import UNITS
 from scenarios.load import load
@@ -143,3 +144,20 @@ def test_judging_keeps_the_order_of_the_scenario(recording) -> None:
         ("ground.leak", "≤ 0.1", False),
         ("recovery.rate", "≥ 0.5", False),
     ]
+
+
+def test_a_run_cut_short_leaves_open_what_may_still_come() -> None:
+    expect = {
+        "recovery.events": Bound(min=1),
+        "recovery.rate": Bound(min=0.5),
+        "tracking.id_switches": Bound(max=0),
+        "ground.f1": Bound(min=0.9),
+    }
+    metrics = [
+        Metric("recovery.events", 0.0, "count"),
+        Metric("recovery.rate", None, "1"),
+        Metric("tracking.id_switches", 2.0, "count"),
+        Metric("ground.f1", 0.8, "1"),
+    ]
+    assert [v.word for v in judge(expect, metrics, whole=False)] == ["open", "open", "not met", "not met"]
+    assert all(v.failed for v in judge(expect, metrics))
