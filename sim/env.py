@@ -74,7 +74,7 @@ class LidarEnv(gym.Env[Observation, Any], EzPickle):
         world_seed, noise_seed = np.random.SeedSequence(int(self.np_random.integers(2**62))).spawn(2)
         self._world = World(self.scenario, world_seed)
         self._lidar = Lidar(
-            self.scenario.sensor, self.scenario.rate, self._world.terrain, self.scenario.things, noise_seed
+            self.scenario.sensor, self.scenario.rate, self._world.terrain, self._world.things, noise_seed
         )
         self._index = 0
         obs, info = self._sweep(self._world.reset())

@@ -78,7 +78,7 @@ class World:
         seed: of terrain, traffic and walkers, each with a stream of its own.
 
     Attributes:
-        terrain: the ground. roads: clipped to it.
+        terrain: the ground. roads: clipped to it. things: that stand on it.
         time: of the last sweep's end [s since the first scan].
     """
 
@@ -93,6 +93,7 @@ class World:
         area = around(self._traffic.reachable(scenario.duration), scenario.sensor.range + AROUND)
         self.roads = clip(self._traffic.roads, area)
         self.terrain: Terrain = build_terrain(scenario.terrain, self.roads, area, ground)
+        self.things = scenario.things
 
     @staticmethod
     def actions(scenario: Scenario) -> Space[Any]:
