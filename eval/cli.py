@@ -13,6 +13,7 @@ from datmo.errors import DatmoError
 from eval.commands.catalog import catalog
 from eval.commands.check import check
 from eval.commands.detect import detect
+from eval.commands.digest import digest
 from eval.commands.generate import generate
 from eval.commands.run import run
 from eval.commands.segment import segment
@@ -38,6 +39,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "test": check,
     "sweep": sweep,
     "generate": generate,
+    "digest": digest,
     "segment": segment,
     "detect": detect,
     "view": view,

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Protocol
 
@@ -102,7 +103,7 @@ def generate(
 
 
 def write_sequence(job: Plan) -> int:
-    """Play one episode and write its scans; returns how many."""
+    """Play one episode and write its scans, and when each actor was hidden; returns how many scans."""
     env = LidarEnv(job.scenario)
     writer, count = FORMATS[job.format](job.folder), 0
     try:
@@ -110,6 +111,8 @@ def write_sequence(job: Plan) -> int:
             writer.add(info["scan"], info["truth"])
             count += 1
         writer.close()
+        hidden = [asdict(interval) for interval in env.hidden_intervals]
+        (job.folder / "hidden.json").write_text(json.dumps(hidden, indent=1) + "\n", encoding="utf-8")
     finally:
         env.close()
     return count

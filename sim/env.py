@@ -16,6 +16,7 @@ from datmo.errors import SimulationError
 from datmo.messages import Relief, Scan, Truth
 from scenarios.load import load
 from scenarios.spec import Scenario
+from sim.hidden import Hidden, HiddenIntervals
 from sim.picture import picture
 from sim.scan.sweep import Lidar
 from sim.scene.motion import Poses
@@ -77,6 +78,7 @@ class LidarEnv(gym.Env[Observation, Any], EzPickle):
             self.scenario.sensor, self.scenario.rate, self._world.terrain, self._world.things, noise_seed
         )
         self._index = 0
+        self._hidden = HiddenIntervals()
         obs, info = self._sweep(self._world.reset())
         return obs, info
 
@@ -115,6 +117,11 @@ class LidarEnv(gym.Env[Observation, Any], EzPickle):
         """The terrain of the running episode."""
         return self.world.terrain
 
+    @property
+    def hidden_intervals(self) -> tuple[Hidden, ...]:
+        """When each actor was hidden, over the episode so far."""
+        return self._hidden.intervals() if self._world is not None else ()
+
     def relief(self, xy: F64) -> Relief:
         """True ground at places (g, 2) [m, sensor] of the last scan, for the judge."""
         return self._lidar.relief(self._scan.T_world_sensor, xy)
@@ -124,6 +131,7 @@ class LidarEnv(gym.Env[Observation, Any], EzPickle):
         scan, truth = self._lidar.sweep(poses, self._index)
         self._scan: Scan = scan
         self._truth: Truth = truth
+        self._hidden.add(truth)
         distance, intensity = self._lidar.range_image()
         self.milliseconds["cast"] = (perf_counter() - start) * 1e3
         return {"range": distance, "intensity": intensity}, {"scan": scan, "truth": truth}
