@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -30,6 +31,9 @@ def test_ground_agrees_in_the_world_whatever_the_workers(tiny: Scenario, tmp_pat
         assert generate([world], 5, 3, "semantickitti", tmp_path / name, workers) == [3, 2]
     assert content(tmp_path / "one") == content(tmp_path / "two")
     folder = tmp_path / "one" / "sequences" / "00"
+    for interval in json.loads((folder / "hidden.json").read_text()):
+        assert set(interval) == {"actor", "start", "end"}
+        assert interval["end"] is None or 0 < interval["end"] - interval["start"] <= 0.2 + 1e-9
     Tr = np.loadtxt(str(folder / "calib.txt"), usecols=range(1, 13), skiprows=4).reshape(3, 4)
     Tr = np.vstack([Tr, [0, 0, 0, 1]])
     poses = np.loadtxt(folder / "poses.txt").reshape(-1, 3, 4)
