@@ -41,7 +41,7 @@ class Digest:
             return
         array = np.ascontiguousarray(value)
         self._hash.update(f"{name} {array.dtype.str} {array.shape}".encode())
-        self._hash.update(memoryview(array).cast("B") if array.size else b"")
+        self._hash.update(array.tobytes())
 
 
 def digest(pairs: Iterable[tuple[Scan, Truth]]) -> str:

@@ -30,8 +30,8 @@ Step = tuple[Observation, float, bool, bool, dict[str, Any]]
 class LidarEnv(gym.Env[Observation, Any], EzPickle):
     """A lidar on a vehicle in traffic over terrain.
 
-    Observation: `range` (64, columns) f32 [m], row 0 the top ring, columns in firing order from
-    the rear, clockwise from above, 0 where nothing returned; `intensity` (64, columns) f32, 0..1.
+    Observation: `range` (rings, columns) f32 [m], row 0 the top ring, columns in firing order from
+    the rear, clockwise from above, 0 where nothing returned; `intensity` (rings, columns) f32, 0..1.
     Action: `Discrete(1)` on autopilot; highway-env's own action space with `control: agent`.
     Reward: 0; the `Testbed` scores. `info`: `scan` (Scan) and `truth` (Truth).
     The episode ends (`truncated`) at the scenario's duration, or (`terminated`) when the ego
@@ -57,8 +57,7 @@ class LidarEnv(gym.Env[Observation, Any], EzPickle):
         self.scenario = scenario if isinstance(scenario, Scenario) else load(scenario)
         self.render_mode = render_mode
         self.metadata = {**type(self).metadata, "render_fps": round(self.scenario.rate)}
-        self.columns = Lidar.columns(self.scenario.rate)
-        shape = (64, self.columns)
+        shape = Lidar.shape(self.scenario.sensor, self.scenario.rate)
         self.observation_space: Space[Observation] = Dict(  # type: ignore[assignment]
             range=Box(0, self.scenario.sensor.range + 1, shape, np.float32),
             intensity=Box(0, 1, shape, np.float32),

@@ -9,7 +9,7 @@ from pydantic import BaseModel
 
 from scenarios import spec
 from scenarios.expect import UNITS
-from sim.scan.hdl64 import unit_names
+from sim.scan.units import unit_names
 
 DOCS = Path(__file__).parents[1] / "docs"
 MODELS = [m for m in vars(spec).values() if isinstance(m, type) and issubclass(m, spec.Model)]

@@ -23,7 +23,7 @@ MIN_RANGE = 0.9
 
 @dataclass(frozen=True, eq=False)
 class Hits:
-    """What each ray of a sweep met first; 64 * C rays, ring by ring, in firing order.
+    """What each ray of a sweep met first; L * C rays, ring by ring, in firing order.
 
     Attributes:
         distance: (m,) along the ray [m], inf where it met nothing within range or is blind.
@@ -54,7 +54,7 @@ class Caster:
 
     Args:
         pattern: the rays. terrain: in the world. things: in the world, or None.
-        max_range: [m]. blind: (64, C) rays that the ego's own body takes; they meet nothing and
+        max_range: [m]. blind: (L, C) rays that the ego's own body takes; they meet nothing and
             count nowhere. bodies: the body of an asset key.
     """
 

@@ -143,7 +143,7 @@ def candidates(
     left is tested against the padded box in double precision. No ray that would hit is lost.
 
     Args:
-        blind: (64, C) rays that the ego's own body takes.
+        blind: (L, C) rays that the ego's own body takes.
         T_wa: (B + 1, 4, 4) T_world_actor at the block edges. max_range: [m].
 
     Returns:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from datmo.arrays import Bool
 from sim.scan.pattern import Pattern
 
-SKYLINE = (
+KITTI = (
     (-180.0, -18.4),
     (-161.0, -18.8),
     (-156.0, -22.5),
@@ -39,15 +41,20 @@ SKYLINE = (
 rear: tail and roof, a corner of the rack, a mast, the bonnet's side, front, and back."""
 
 
-def own_body(pattern: Pattern) -> Bool:
-    """Rays (64, C) that end on the ego's own body and so return nothing.
+def own_body(pattern: Pattern, outline: bool | str | Sequence[tuple[float, float]] = True) -> Bool:
+    """Rays (L, C) that end on the ego's own body and so return nothing.
 
-    A ray is lost where it points below the skyline of the vehicle. The outline is a plain sketch
-    fitted to the share of rays that KITTI's vehicle takes from each ring (0.22 of ring 56 rising
-    to 0.47 of ring 63: all beyond 160 degrees of azimuth, a window of some 40 degrees ahead). It is fixed to
-    the sensor: the rack is taken to rise with it.
+    A ray is lost where it points below the outline of the vehicle. KITTI's is a plain sketch
+    fitted to the share of rays that its vehicle takes from each ring of an HDL-64E (0.22 of ring 56
+    rising to 0.47 of ring 63: all beyond 160 degrees of azimuth, a window of some 40 degrees ahead).
+    An outline is fixed to the sensor: a rack is taken to rise with it.
+
+    Args:
+        outline: True or "kitti", False for none, or points (azimuth, elevation) [deg].
     """
-    azimuth, elevation = np.array(SKYLINE).T
+    if outline is False:
+        return np.zeros((len(pattern.elevation), pattern.columns), bool)
+    azimuth, elevation = np.array(KITTI if isinstance(outline, bool | str) else outline).T
     a = np.rad2deg(pattern.rotor[None, :] + pattern.azimuth[:, None])
     a = (a + 180) % 360 - 180
     return np.asarray(np.rad2deg(pattern.elevation)[:, None] < np.interp(a, azimuth, elevation))

@@ -70,7 +70,7 @@ def _carry(T: F64, o: F64, d: F64, o_w: F32, d_w: F32, start: int, stop: int) ->
 
 
 def world_rays(pattern: Pattern, motion: SweepMotion) -> tuple[F32, F32]:
-    """Origins and directions (64 * C, 3) of every ray in the world, ring by ring."""
+    """Origins and directions (L * C, 3) of every ray in the world, ring by ring."""
     rings, C = len(pattern.elevation), pattern.columns
     o_w, d_w = np.empty((rings * C, 3), np.float32), np.empty((rings * C, 3), np.float32)
 

@@ -7,24 +7,22 @@ from dataclasses import dataclass
 import numpy as np
 
 from datmo.arrays import F64
-from sim.scan.hdl64 import Unit
-
-FIRINGS_PER_SECOND = 20833
+from sim.scan.units import Unit
 
 
 @dataclass(frozen=True, eq=False)
 class Pattern:
-    """64 x C rays; ring 0 is the top, columns are in firing order.
+    """L x C rays; ring 0 is the top, columns are in firing order.
 
     Attributes:
         period: duration of the sweep [s].
         time: (C,) of each column relative to the stamp [s]; the last fires at 0.
         rotor: (C,) azimuth of the head [rad, counter-clockwise]; it starts at the rear and turns
             clockwise seen from above, back at the rear at the stamp.
-        azimuth: (64,) correction of each ring [rad]; a ray's azimuth is rotor + azimuth.
-        elevation: (64,) [rad].
-        origins: (64, C, 3) [m, sensor at the ray's own time], perpendicular to the ray.
-        directions: (64, C, 3) unit [sensor at the ray's own time].
+        azimuth: (L,) correction of each ring [rad]; a ray's azimuth is rotor + azimuth.
+        elevation: (L,) [rad].
+        origins: (L, C, 3) [m, sensor at the ray's own time], perpendicular to the ray.
+        directions: (L, C, 3) unit [sensor at the ray's own time].
     """
 
     period: float
@@ -41,16 +39,19 @@ class Pattern:
         return len(self.time)
 
 
-def columns(rate: float) -> int:
-    """Columns of a sweep at `rate` [Hz]: 2083 at 10 Hz."""
-    return round(FIRINGS_PER_SECOND / rate)
+def pattern(unit: Unit, rate: float, encoder: bool = True) -> Pattern:
+    """The rays of `unit` spinning at `rate` [Hz] (equations in `Unit`).
 
+    A laser fires at even times, and its azimuth is read at the nearest position of the encoder: steps
+    are uneven, multiples of 0.09 degrees for an HDL-64E (0.18 and 0.09 in real sweeps).
 
-def pattern(unit: Unit, rate: float) -> Pattern:
-    """The rays of `unit` spinning at `rate` [Hz] (equations in `Unit`)."""
-    C, period = columns(rate), 1.0 / rate
+    Args:
+        encoder: False for even steps.
+    """
+    C, period = unit.columns(rate), 1.0 / rate
     share = np.arange(1, C + 1) / C
-    rotor = np.pi - 2 * np.pi * share
+    turned = np.round(share * unit.encoder) / unit.encoder if encoder else share
+    rotor = np.pi - 2 * np.pi * turned
     V = unit.elevation[:, None]
     a = rotor[None, :] + unit.azimuth[:, None]
     v, h = unit.vertical_offset[:, None], unit.horizontal_offset[:, None]

@@ -1,4 +1,4 @@
-"""Lidar: one sweep of a real HDL-64 over the world, as a scan and its truth."""
+"""Lidar: one sweep of a real sensor over the world, as a scan and its truth."""
 
 from __future__ import annotations
 
@@ -8,27 +8,56 @@ import numpy as np
 from numba import njit
 
 from datmo.arrays import F32, F64, I64
-from datmo.errors import SimulationError
+from datmo.errors import ScenarioError, SimulationError
 from datmo.messages import Relief, Scan, Truth
 from scenarios import spec
 from sim.scan.bodies import Body, body
 from sim.scan.caster import Caster
 from sim.scan.embree import Mesh
-from sim.scan.hdl64 import unit
 from sim.scan.mask import own_body
-from sim.scan.pattern import columns, pattern
+from sim.scan.pattern import pattern
 from sim.scan.returns import Returns, measure
 from sim.scan.surface import surfaces
 from sim.scan.things import place
+from sim.scan.units import Unit, unit
 from sim.scene.motion import Poses
 from sim.scene.terrain import Terrain
 from sim.truth import ground_below, relief, truth_of
 
 
 def mount(sensor: spec.Sensor) -> F64:
-    """T_ego_sensor: `forward` and `height` from the ego's centre on the ground, nose down by `pitch_deg`."""
-    c, s = np.cos(np.deg2rad(sensor.pitch_deg)), np.sin(np.deg2rad(sensor.pitch_deg))
-    return np.array([[c, 0, s, sensor.forward], [0, 1, 0, 0], [-s, 0, c, sensor.height], [0, 0, 0, 1]], float)
+    """T_ego_sensor: from the ego's centre on the ground; turned by yaw, then pitch, then roll."""
+    r, p, y = np.deg2rad([sensor.roll_deg, sensor.pitch_deg, sensor.yaw_deg])
+    T_ego_sensor = np.eye(4)
+    T_ego_sensor[:3, :3] = [
+        [
+            np.cos(y) * np.cos(p),
+            np.cos(y) * np.sin(p) * np.sin(r) - np.sin(y) * np.cos(r),
+            np.cos(y) * np.sin(p) * np.cos(r) + np.sin(y) * np.sin(r),
+        ],
+        [
+            np.sin(y) * np.cos(p),
+            np.sin(y) * np.sin(p) * np.sin(r) + np.cos(y) * np.cos(r),
+            np.sin(y) * np.sin(p) * np.cos(r) - np.cos(y) * np.sin(r),
+        ],
+        [-np.sin(p), np.cos(p) * np.sin(r), np.cos(p) * np.cos(r)],
+    ]
+    T_ego_sensor[:3, 3] = sensor.forward, sensor.left, sensor.height
+    return T_ego_sensor
+
+
+def unit_of(sensor: spec.Sensor) -> Unit:
+    """The unit that a scenario asks for.
+
+    Raises:
+        ScenarioError: there is none, its table is wrong, or it does not see that far.
+    """
+    asked = unit(sensor.unit)
+    if sensor.range > asked.farthest:
+        raise ScenarioError(
+            f"sensor.range is {sensor.range:g} m; {sensor.unit} measures up to {asked.farthest:g} m; lower it"
+        )
+    return asked
 
 
 @njit(cache=True, nogil=True)
@@ -48,7 +77,7 @@ def _points(o: F64, d: F64, T: F64, rays: I64, distance: F32, out: F64) -> None:
 
 
 class Lidar:
-    """A calibrated HDL-64 on the ego's roof.
+    """A calibrated sensor on the ego's roof.
 
     Args:
         sensor: its description. rate: sweeps a second [Hz]. terrain: the ground.
@@ -57,7 +86,7 @@ class Lidar:
         bodies: the body of an asset key.
 
     Raises:
-        ScenarioError: the unit is unknown.
+        ScenarioError: the unit is unknown, or does not see that far.
     """
 
     def __init__(
@@ -70,24 +99,27 @@ class Lidar:
         bodies: Callable[[str], Body] = body,
     ) -> None:
         self.sensor, self.rate, self._terrain, self._seed, self._bodies = sensor, rate, terrain, seed, bodies
-        calibrated = unit(sensor.unit)
-        self.pattern = pattern(calibrated, rate)
+        calibrated = unit_of(sensor)
+        self.pattern = pattern(calibrated, rate, sensor.encoder)
         self.T_ego_sensor = mount(sensor)
         self.eye = np.array([0.0, 0.0, calibrated.vertical_offset.mean()])
         self._ground = Mesh(terrain.vertices, terrain.triangles)
         self._terrain_kind = np.ascontiguousarray(terrain.kind).ravel()
         self._things = place(things, terrain)
         static = None if self._things is None else self._things.mesh
-        blind = own_body(self.pattern)
-        if not sensor.body_mask:
-            blind[:] = False
+        blind = own_body(self.pattern, sensor.body_mask)
         self.caster = Caster(self.pattern, self._ground, static, sensor.range, blind, bodies)
         self._last: Returns | None = None
 
     @staticmethod
-    def columns(rate: float) -> int:
-        """Firings of one laser in a sweep at `rate` [Hz]."""
-        return columns(rate)
+    def shape(sensor: spec.Sensor, rate: float) -> tuple[int, int]:
+        """Rings, and firings of each in a sweep at `rate` [Hz]: (64, 2083) for an HDL-64E at 10 Hz.
+
+        Raises:
+            ScenarioError: the unit is unknown, or does not see that far.
+        """
+        asked = unit_of(sensor)
+        return asked.rings, asked.columns(rate)
 
     def sweep(self, poses: Poses, index: int) -> tuple[Scan, Truth]:
         """The sweep that ends at `index` / rate, and its truth.
@@ -125,7 +157,7 @@ class Lidar:
         return scan, truth_of(hits, met, returns.hit, height, poses, bodies, stamp, C)
 
     def range_image(self) -> tuple[F32, F32]:
-        """Range [m] and intensity of the last sweep, (64, C) each, row 0 the top ring, 0 no return."""
+        """Range [m] and intensity of the last sweep, (L, C) each, row 0 the top ring, 0 no return."""
         if self._last is None:
             raise SimulationError("there is no range image yet: no sweep was cast; call sweep() first")
         shape = (len(self.pattern.elevation), self.pattern.columns)

@@ -12,7 +12,7 @@ from datmo.arrays import F64
 from datmo.geometry import corners_bev, overlap_bev
 from datmo.messages import Kind
 from scenarios.spec import Scenario
-from sim.scan.pattern import columns
+from sim.scan.units import unit
 from sim.scene.contact import stand
 from sim.scene.curve import hermite
 from sim.scene.flow import Traffic
@@ -86,7 +86,7 @@ class World:
         self.scenario = scenario
         ground, self._traffic_seed, *self._walker_seeds = spawn(seed, 2 + len(scenario.pedestrians))
         self._steps = int(np.ceil(PHYSICS / scenario.rate))
-        self._edges = edges(columns(scenario.rate), 1.0 / scenario.rate)
+        self._edges = edges(unit(scenario.sensor.unit).columns(scenario.rate), 1.0 / scenario.rate)
         self.crashed = self._played = False
         self._warm_up = round(scenario.traffic.warm_up * scenario.rate)
         self._begin()

@@ -10,8 +10,8 @@ import pytest
 from datmo.arrays import F32, F64, I32
 from datmo.messages import Kind
 from sim.scan.bodies import Body, body_of
-from sim.scan.hdl64 import Unit
 from sim.scan.pattern import Pattern, pattern
+from sim.scan.units import Unit
 from sim.scene.motion import Poses, edges
 
 

@@ -14,10 +14,10 @@ from sim.scan import culling
 from sim.scan.bodies import Body
 from sim.scan.caster import Caster, Hits
 from sim.scan.embree import Mesh
-from sim.scan.hdl64 import unit
 from sim.scan.merge import NOTHING, TERRAIN, THING
 from sim.scan.motion import SweepMotion, sweep_motion
 from sim.scan.pattern import Pattern, pattern
+from sim.scan.units import unit
 from sim.scene.motion import BLOCK, Poses
 
 Bodies = Callable[[str], Body]

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from datmo.errors import SimulationError
-from sim.scan.hdl64 import unit
 from sim.scan.motion import sweep_motion
 from sim.scan.pattern import pattern
+from sim.scan.units import unit
 from sim.scene.motion import edges
 
 GRID = pattern(unit("hdl64e-utexas"), 10)

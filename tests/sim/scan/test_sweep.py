@@ -13,9 +13,9 @@ from datmo.geometry import inverse, transform
 from datmo.messages import Kind
 from scenarios import spec
 from sim.scan.bodies import Body
-from sim.scan.hdl64 import unit
 from sim.scan.pattern import pattern
 from sim.scan.sweep import Lidar, mount
+from sim.scan.units import unit
 from sim.scene.motion import Poses
 from sim.scene.roads import Road
 from sim.scene.terrain import Terrain, build_terrain
@@ -225,8 +225,8 @@ def test_things_stand_on_the_ground_and_are_known(
 
 
 def test_bad_input_is_refused(hills: Terrain, bodies: Bodies) -> None:
-    with pytest.raises(ScenarioError, match="calibrated unit"):
-        lidar(hills, bodies, unit="hdl-32e")
+    with pytest.raises(ScenarioError, match="no unit"):
+        lidar(hills, bodies, unit="hdl-23e")
     with pytest.raises(SimulationError, match="sweep"):
         lidar(hills, bodies).range_image()
 
