@@ -11,7 +11,7 @@ from scenarios.spec.pedestrians import Pedestrian
 from scenarios.spec.returns import Noise
 from scenarios.spec.scenario import Bound, Scenario
 from scenarios.spec.sensor import Sensor
-from scenarios.spec.terrain import Terrain
+from scenarios.spec.terrain import Terrain, TerrainFile
 from scenarios.spec.things import Thing
 from scenarios.spec.traffic import Ego, Traffic
 
@@ -25,6 +25,7 @@ __all__ = [
     "Scenario",
     "Sensor",
     "Terrain",
+    "TerrainFile",
     "Thing",
     "Traffic",
     "WayPoint",

@@ -4,11 +4,35 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
-from scenarios.spec.base import Model
+from scenarios.spec.base import Model, Point
+from scenarios.spec.layers import Ditch, Layer, Pothole, Potholes, SpeedBump, Washboard
 
 Roughness = Literal["flat", "A", "B", "C", "D", "E", "F", "G", "H"]
+
+
+class TerrainFile(Model):
+    """A ground from a file, under everything else: a height map or a mesh, told by the name's end."""
+
+    path: str = Field(
+        min_length=1, description=".png, .tif, .npy, .obj, .ply, .stl ...; relative to the scenario's file"
+    )
+    pixel: float | None = Field(
+        None, gt=0, le=100, description="a height map's spacing; null: as a GeoTIFF says [m]"
+    )
+    height_scale: float | None = Field(
+        None, gt=0, description="metres a unit of the file's heights; null: 1, and not for .png"
+    )
+    height_offset: float = Field(0.0, description="added after scaling [m]")
+    corner: Point | None = Field(
+        None, description="[x, y] of a map's lowest x and y; null: its middle is the origin [m, world]"
+    )
+    shift: Point = Field((0.0, 0.0), description="[x, y] added to a mesh's scaled coordinates [m]")
+    up: Literal["y", "z"] = Field("z", description="the axis of a mesh that points up")
+    outside: Literal["error", "clamp"] = Field(
+        "error", description="where the drive leaves the file: an error, or level on from its rim"
+    )
 
 
 class Terrain(Model):
@@ -20,3 +44,35 @@ class Terrain(Model):
     road_roughness: Roughness = Field("flat", description="ISO 8608 class of the road")
     shoulder: float = Field(3.0, gt=0, le=20, description="width over which road turns into field [m]")
     cell: float = Field(0.3, ge=0.1, le=2.0, description="spacing of the height grid [m]")
+    layers: tuple[Layer, ...] = Field((), description="what else shapes the ground; their heights add up")
+    file: TerrainFile | None = Field(None, description="a height map or mesh under all else")
+
+    @model_validator(mode="after")
+    def _resolved(self) -> Terrain:
+        """What is finer than the grid can show would come out as something else."""
+        for i, layer in enumerate(self.layers):
+            name, finest, cells = _finest(layer)
+            if finest < cells * self.cell - 1e-9:
+                raise ValueError(
+                    f"layers.{i} ({layer.kind}): {name} {finest} m is under {cells} cells of {self.cell} m; "
+                    f"set cell to {finest / cells:.3g} or below, or enlarge it"
+                )
+        for kind in ("bank", "kerb"):
+            if sum(layer.kind == kind for layer in self.layers) > 1:
+                raise ValueError(f"layers: {kind} is there twice and holds for all roads; keep one of them")
+        return self
+
+
+def _finest(layer: Layer) -> tuple[str, float, int]:
+    """The smallest measure of a layer, its name, and the cells that it needs at least."""
+    if isinstance(layer, Washboard):
+        return "wavelength", layer.wavelength, 4
+    if isinstance(layer, SpeedBump):
+        return "length", layer.length, 4
+    if isinstance(layer, Ditch):
+        return "width", layer.width, 4
+    if isinstance(layer, Pothole):
+        return "radius", layer.radius, 2
+    if isinstance(layer, Potholes):
+        return "radius", layer.radius[0], 2
+    return "", float("inf"), 0

@@ -1,21 +1,16 @@
-"""The ground: a height grid on a sloped plane, rough beside the roads and smoother on them."""
+"""The ground as the simulator asks it: a triangulated height grid."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from datmo.arrays import F32, F64, I32, U8
-from datmo.errors import SimulationError
 from datmo.messages import Kind
-from scenarios import spec
-from sim.scene.roads import Road, beyond_edge
-from sim.scene.roughness import rough_field
 
-MOST_VERTICES = 16_000_000
 STEPS = 30  # of Newton's method along a ray; two or three are usual
 CLOSE = 1e-9  # [m]
 
@@ -48,73 +43,41 @@ def _look_up(height: F64, x0: float, y0: float, cell: float, xy: F64, out: F64) 
 
 
 @njit(cache=True, nogil=True)
-def _along(height: F64, x0: float, y0: float, cell: float, points: F64, d: F64, out: F64) -> None:
+def _meet(height: F64, x0: float, y0: float, cell: float, x: float, y: float, z: float, d: F64) -> float:
     """Newton's method on z + t dz - H(x + t dx, y + t dy), exact in the triangle that holds the root.
 
     After some steps it may only hop between triangles; halving the step then ends the hopping.
     """
+    t = 0.0
+    for step in range(STEPS):
+        ground, gx, gy = _plane(height, x0, y0, cell, x + t * d[0], y + t * d[1])
+        gap = z + t * d[2] - ground
+        rate = d[2] - gx * d[0] - gy * d[1]
+        if abs(gap) < CLOSE:
+            return t
+        if rate == 0.0 or np.isnan(gap):
+            break
+        t -= gap / rate if step < STEPS // 3 else 0.5 * gap / rate
+    return float(np.nan)
+
+
+@njit(cache=True, nogil=True)
+def _along(height: F64, x0: float, y0: float, cell: float, points: F64, d: F64, out: F64) -> None:
+    """Distances along d from points (n, 3) [world] to the ground."""
     for k in range(len(points)):
-        x, y, z = points[k, 0], points[k, 1], points[k, 2]
-        t, out[k] = 0.0, np.nan
-        for step in range(STEPS):
-            ground, gx, gy = _plane(height, x0, y0, cell, x + t * d[0], y + t * d[1])
-            gap = z + t * d[2] - ground
-            rate = d[2] - gx * d[0] - gy * d[1]
-            if abs(gap) < CLOSE:
-                out[k] = t
-                break
-            if rate == 0.0 or np.isnan(gap):
-                break
-            t -= gap / rate if step < STEPS // 3 else 0.5 * gap / rate
+        out[k] = _meet(height, x0, y0, cell, points[k, 0], points[k, 1], points[k, 2], d)
 
 
-def build_terrain(
-    terrain: spec.Terrain,
-    roads: Sequence[Road],
-    area: tuple[float, float, float, float],
-    seed: np.random.SeedSequence,
-) -> Terrain:
-    """The ground of a scenario.
-
-    A plane through the world's origin, plus the field's roughness outside the roads and another,
-    independent, roughness on them; the one turns into the other over `terrain.shoulder` metres
-    beyond the road's edge.
-
-    Args:
-        area: x_min, y_min, x_max, y_max [m, world]; the grid covers it.
-
-    Raises:
-        SimulationError: the area is empty, not finite, or too large for its cell.
-    """
-    x0, y0, ny, nx = _grid(area, terrain.cell)
-    cell = terrain.cell
-    fields = [np.random.SeedSequence(seed.entropy, spawn_key=(*seed.spawn_key, i)) for i in range(2)]
-    beyond = beyond_edge(roads, (ny, nx), (x0, y0), cell, terrain.shoulder)
-    share = np.clip(beyond / terrain.shoulder, 0.0, 1.0)
-    share = share * share * (3 - 2 * share)  # smooth step
-    height = share * rough_field((ny, nx), cell, terrain.roughness, fields[0])
-    if roads:
-        height += (1 - share) * rough_field((ny, nx), cell, terrain.road_roughness, fields[1])
-    height += terrain.grade * (y0 + cell * np.arange(ny))[:, None]
-    height += terrain.cross_slope * (x0 + cell * np.arange(nx))[None, :]
-    inside = (beyond[1:, 1:] + beyond[:-1, :-1] + beyond[1:, :-1] + beyond[:-1, 1:]) <= 0
-    kind = np.where(inside, Kind.ROAD, Kind.FIELD).astype(np.uint8)
-    return Terrain(x0, y0, cell, height.astype(np.float32).astype(float), kind)
-
-
-def _grid(area: tuple[float, float, float, float], cell: float) -> tuple[float, float, int, int]:
-    x_min, y_min, x_max, y_max = area
-    if not (np.isfinite(area).all() and x_min < x_max and y_min < y_max):
-        raise SimulationError(
-            f"the terrain's area is {area}; it must be finite with x_min < x_max and y_min < y_max; widen it"
-        )
-    nx, ny = (max(int(np.ceil(side / cell - 1e-9)), 1) + 1 for side in (x_max - x_min, y_max - y_min))
-    if nx * ny > MOST_VERTICES:
-        raise SimulationError(
-            f"a terrain of {nx} x {ny} heights is over {MOST_VERTICES}; "
-            f"raise terrain.cell above {cell} m or shorten the drive"
-        )
-    return float(x_min), float(y_min), ny, nx
+@njit(cache=True, nogil=True)
+def _below(height: F64, x0: float, y0: float, cell: float, points: F64, T: F64, out: F32) -> None:
+    """z of the ground along the z axis of a frame, below points (n, 3) of it; T takes it to the world."""
+    up, p = np.empty(3), np.empty(3)
+    for i in range(3):
+        up[i] = T[i, 2]
+    for k in range(len(points)):
+        for i in range(3):
+            p[i] = T[i, 0] * points[k, 0] + T[i, 1] * points[k, 1] + T[i, 2] * points[k, 2] + T[i, 3]
+        out[k] = points[k, 2] + _meet(height, x0, y0, cell, p[0], p[1], p[2], up)
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,6 +91,7 @@ class Terrain:
         x0, y0: the corner [m, world]. cell: spacing [m].
         height: (ny, nx) float64 holding float32 values, so that the mesh is the grid [m, world].
         kind: (ny - 1, nx - 1) uint8 of datmo.messages.Kind, one a cell.
+        roughness, road_roughness: ISO 8608 class of the field, and of road and sidewalk.
     """
 
     x0: float
@@ -135,6 +99,8 @@ class Terrain:
     cell: float
     height: F64
     kind: U8
+    roughness: str = "flat"
+    road_roughness: str = "flat"
 
     def height_at(self, xy: F64) -> F64:
         """Heights (n,) [m, world] of the mesh at xy (n, 2) [m, world]."""
@@ -154,6 +120,14 @@ class Terrain:
         j = np.clip(np.floor((xy[:, 1] - self.y0) / self.cell), 0, rows - 1).astype(int)
         return np.asarray(self.kind[j, i])
 
+    def roughness_at(self, xy: F64) -> NDArray[np.str_]:
+        """ISO 8608 class (n,), "A" to "H" or "flat", that the ground under xy (n, 2) was drawn from.
+
+        Over the shoulder, where road turns into field, it is the field's.
+        """
+        field = self.kind_at(xy) == Kind.FIELD
+        return np.where(field, self.roughness, self.road_roughness)
+
     def along(self, points: F64, direction: F64) -> F64:
         """Signed distances t (n,) [m] at which points + t direction lies on the ground.
 
@@ -166,6 +140,15 @@ class Terrain:
         out = np.empty(len(points))
         _along(self.height, self.x0, self.y0, self.cell, points, np.asarray(direction, float), out)
         return out
+
+    def below(self, points: F64, T_world_frame: F64, out: F32) -> None:
+        """Fill `out` (n,) with z [m, frame] where the line through each point along the frame's z axis
+        meets the ground, NaN where it does not settle on it.
+
+        Args:
+            points: (n, 3) [m, frame]. T_world_frame: (4, 4).
+        """
+        _below(self.height, self.x0, self.y0, self.cell, points, T_world_frame, out)
 
     @property
     def area(self) -> tuple[float, float, float, float]:
