@@ -105,7 +105,7 @@ def read_chain(path: Path) -> list[Source]:
                 f"{path}: extends: it leads back to itself; end the chain at a file without it"
             )
         visited.append(path.resolve())
-        says = _read(path)
+        says = _rooted(_read(path), path.parent)
         chain.append(Source(str(path), says))
         parent = says.get("extends")
         if parent is None:
@@ -123,6 +123,16 @@ def merge(parent: Any, child: Any) -> Any:
     if isinstance(parent, dict) and isinstance(child, dict):
         return {**parent, **{k: merge(parent.get(k), v) for k, v in child.items()}}
     return child
+
+
+def _rooted(says: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """What a file says, its terrain's file found from the folder of the scenario."""
+    terrain = says.get("terrain")
+    file = terrain.get("file") if isinstance(terrain, dict) else None
+    path = file.get("path") if isinstance(file, dict) else None
+    if not (isinstance(terrain, dict) and isinstance(file, dict) and isinstance(path, str) and path):
+        return says
+    return {**says, "terrain": {**terrain, "file": {**file, "path": str((folder / path).absolute())}}}
 
 
 def _read(path: Path) -> dict[str, Any]:

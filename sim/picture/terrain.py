@@ -13,8 +13,6 @@ COLOURS = {Kind.ROAD: (120, 122, 128), Kind.SIDEWALK: (190, 178, 160), Kind.FIEL
 LIGHT = np.array([-0.55, 0.45, 0.70])
 """Towards the sun, from the upper left; maps are lit so, or hills look like hollows."""
 AMBIENT = 0.3
-BANDS = 12
-"""Contour lines over the whole range of heights."""
 
 
 def terrain_picture(terrain: Terrain, pixels: int = PIXELS, exaggerate: float | None = None) -> U8:
@@ -25,7 +23,8 @@ def terrain_picture(terrain: Terrain, pixels: int = PIXELS, exaggerate: float | 
     """
     xy, shape = _places(terrain, pixels)
     height = terrain.height_at(xy).reshape(shape)
-    slope = -(terrain.normal_at(xy)[:, :2] / terrain.normal_at(xy)[:, 2:]).reshape(*shape, 2)
+    normal = terrain.normal_at(xy)
+    slope = -(normal[:, :2] / normal[:, 2:]).reshape(*shape, 2)
     if exaggerate is None:
         steep = float(np.quantile(np.hypot(slope[..., 0], slope[..., 1]), 0.98))
         exaggerate = float(np.clip(0.5 / max(steep, 1e-6), 1.0, 20.0))
