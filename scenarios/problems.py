@@ -48,6 +48,13 @@ def _sentence(error: ErrorDetails) -> str:
     if kind == "extra_forbidden":
         known = _fields(place[:-1])
         return f" = {_short(value)}: there is no such key; {nearest(str(place[-1]), known)}"
+    if kind in ("union_tag_invalid", "union_tag_not_found"):
+        name = str(ctx["discriminator"]).strip("'")
+        known = [part.strip(" '") for part in str(ctx.get("expected_tags", "")).split(",") if part]
+        if not known:
+            return f".{name} is missing; add it"
+        rule = f"it must be one of {', '.join(known)}"
+        return f".{name} = {_short(ctx['tag'])}: {rule}; {nearest(ctx['tag'], known)}"
     if kind == "missing":
         return f" is missing{meaning}; add it"
     if kind == "literal_error":
@@ -89,11 +96,26 @@ def _annotation(place: Place) -> Any:
         model = _model(kind)
         if isinstance(key, str) and model is not None and key in model.model_fields:
             kind = model.model_fields[key].annotation
+        elif isinstance(key, str) and _tagged(kind, key) is not None:
+            kind = _tagged(kind, key)
         elif get_args(kind):
             kind = get_args(kind)[-1] if isinstance(key, str) else get_args(kind)[0]
         else:
             return None
     return kind
+
+
+def _tagged(kind: Any, tag: str) -> type[BaseModel] | None:
+    """The model of a union, told apart by their `kind`, that a tag names."""
+    for member in get_args(kind):
+        model = _model(member)
+        if model is None:
+            found = _tagged(member, tag)
+            if found is not None:
+                return found
+        elif "kind" in model.model_fields and tag in get_args(model.model_fields["kind"].annotation):
+            return model
+    return None
 
 
 def _model(kind: Any) -> type[BaseModel] | None:

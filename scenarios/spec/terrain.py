@@ -10,6 +10,7 @@ from scenarios.spec.base import Model, Point
 from scenarios.spec.layers import Ditch, Layer, Pothole, Potholes, SpeedBump, Washboard
 
 Roughness = Literal["flat", "A", "B", "C", "D", "E", "F", "G", "H"]
+FINEST = 0.1  # the least spacing of the height grid [m]
 
 
 class TerrainFile(Model):
@@ -43,7 +44,7 @@ class Terrain(Model):
     roughness: Roughness = Field("flat", description="ISO 8608 class of the field")
     road_roughness: Roughness = Field("flat", description="ISO 8608 class of the road")
     shoulder: float = Field(3.0, gt=0, le=20, description="width over which road turns into field [m]")
-    cell: float = Field(0.3, ge=0.1, le=2.0, description="spacing of the height grid [m]")
+    cell: float = Field(0.3, ge=FINEST, le=2.0, description="spacing of the height grid [m]")
     layers: tuple[Layer, ...] = Field((), description="what else shapes the ground; their heights add up")
     file: TerrainFile | None = Field(None, description="a height map or mesh under all else")
 
@@ -53,9 +54,10 @@ class Terrain(Model):
         for i, layer in enumerate(self.layers):
             name, finest, cells = _finest(layer)
             if finest < cells * self.cell - 1e-9:
+                finer = f"set cell to {finest / cells:.3g}, or " if finest >= cells * FINEST else ""
                 raise ValueError(
                     f"layers.{i} ({layer.kind}): {name} {finest} m is under {cells} cells of {self.cell} m; "
-                    f"set cell to {finest / cells:.3g} or below, or enlarge it"
+                    f"{finer}make it {cells * self.cell:.3g} m"
                 )
         for kind in ("bank", "kerb"):
             if sum(layer.kind == kind for layer in self.layers) > 1:
