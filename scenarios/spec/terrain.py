@@ -45,6 +45,12 @@ class Terrain(Model):
     road_roughness: Roughness = Field("flat", description="ISO 8608 class of the road")
     shoulder: float = Field(3.0, gt=0, le=20, description="width over which road turns into field [m]")
     cell: float = Field(0.3, ge=FINEST, le=2.0, description="spacing of the height grid [m]")
+    coarse_beyond: float | None = Field(
+        None,
+        ge=0,
+        le=500,
+        description="so far from the roads the mesh has cells four times as wide; null: no [m]",
+    )
     layers: tuple[Layer, ...] = Field((), description="what else shapes the ground; their heights add up")
     file: TerrainFile | None = Field(None, description="a height map or mesh under all else")
 

@@ -124,6 +124,9 @@ def _side_by_side(a: F64, a_width: float, b: F64, b_width: float) -> bool:
     """Whether at least half of the shorter line runs along the other, lane beside lane."""
     if len(a) > len(b):
         a, b = b, a
+    room = (a_width + b_width) / 2 + SEAM
+    if (a.max(0) + room < b.min(0)).any() or (b.max(0) + room < a.min(0)).any():
+        return False
     found = offsets(b, a)
     apart = (a_width + b_width) / 2
     near = (found[:, 0] > apart / 2) & (found[:, 0] < apart + SEAM)

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from datmo.arrays import F64, U8
+from datmo.arrays import F64, U8, Bool
 from datmo.messages import Kind
 from scenarios import spec
 from scenarios.spec import layers as kinds
 from sim.scene.roads import Road, beyond_edge
 from sim.scene.roughness import rough_field
-from sim.scene.terrain import cache, roadside, shapes, strewn
+from sim.scene.terrain import cache, far, roadside, shapes, strewn
 from sim.scene.terrain.bank import lean
 from sim.scene.terrain.file import under
 from sim.scene.terrain.grid import Area, Grid, grid_over
@@ -41,7 +41,8 @@ def build_terrain(
     """
     grid = grid_over(area, terrain.cell)
     key = cache.key_of(terrain, roads, grid, seed)
-    height, kind = cache.kept(key, grid.shape, lambda: _raise(terrain, roads, grid, seed))
+    coarse = far.coarse_tiles(roads, grid, terrain.coarse_beyond)
+    height, kind = cache.kept(key, grid.shape, lambda: _raise(terrain, roads, grid, coarse, seed))
     return Terrain(
         grid.x0,
         grid.y0,
@@ -50,11 +51,16 @@ def build_terrain(
         kind,
         roughness=terrain.roughness,
         road_roughness=terrain.road_roughness,
+        coarse=coarse,
     )
 
 
 def _raise(
-    terrain: spec.Terrain, roads: Sequence[Road], grid: Grid, seed: np.random.SeedSequence
+    terrain: spec.Terrain,
+    roads: Sequence[Road],
+    grid: Grid,
+    coarse: Bool | None,
+    seed: np.random.SeedSequence,
 ) -> tuple[F64, U8]:
     """Heights of the nodes and kinds of the cells."""
     reach = roadside.depth_of_interest(terrain.layers, terrain.shoulder)
@@ -73,6 +79,7 @@ def _raise(
         height += under(terrain.file, grid)
     for layer, luck in _with_luck(terrain.layers, seed):
         _add(layer, height, grid, roads, beyond, share, luck)
+    far.flatten(height, coarse)
     return height, _kinds(beyond, sidewalk)
 
 

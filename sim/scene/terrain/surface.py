@@ -8,8 +8,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from datmo.arrays import F32, F64, I32, U8
+from datmo.arrays import F32, F64, I32, U8, Bool
 from datmo.messages import Kind
+from sim.scene.terrain import far
+from sim.scene.terrain.grid import Grid
 
 STEPS = 30  # of Newton's method along a ray; two or three are usual
 CLOSE = 1e-9  # [m]
@@ -92,6 +94,7 @@ class Terrain:
         height: (ny, nx) float64 holding float32 values, so that the mesh is the grid [m, world].
         kind: (ny - 1, nx - 1) uint8 of datmo.messages.Kind, one a cell.
         roughness, road_roughness: ISO 8608 class of the field, and of road and sidewalk.
+        coarse: tiles of `far.FACTOR` cells a side that are two triangles each; None: there are none.
     """
 
     x0: float
@@ -101,6 +104,7 @@ class Terrain:
     kind: U8
     roughness: str = "flat"
     road_roughness: str = "flat"
+    coarse: Bool | None = None
 
     def height_at(self, xy: F64) -> F64:
         """Heights (n,) [m, world] of the mesh at xy (n, 2) [m, world]."""
@@ -158,22 +162,21 @@ class Terrain:
 
     @property
     def vertices(self) -> F32:
-        """(ny nx, 3) [m, world], row by row; made anew at each call."""
+        """(v, 3) [m, world], row by row; made anew at each call."""
         ny, nx = self.height.shape
-        vertices = np.empty((ny, nx, 3), np.float32)
-        vertices[..., 0] = self.x0 + self.cell * np.arange(nx)
-        vertices[..., 1] = (self.y0 + self.cell * np.arange(ny))[:, None]
-        vertices[..., 2] = self.height
-        return vertices.reshape(-1, 3)
+        used = None if self.coarse is None else far.triangles(self.height.shape, self.coarse)[1]
+        grid = Grid(self.x0, self.y0, self.cell, nx, ny)
+        return far.vertices(grid.x, grid.y, self.height, used)
 
     @property
     def triangles(self) -> I32:
-        """(2 (ny - 1) (nx - 1), 3), counter-clockwise from above; 2 c and 2 c + 1 make up cell c."""
-        ny, nx = self.height.shape
-        corner = (np.arange(ny - 1, dtype=np.int32)[:, None] * nx + np.arange(nx - 1, dtype=np.int32)).ravel()
-        below = np.column_stack([corner, corner + 1, corner + nx + 1])
-        above = np.column_stack([corner, corner + nx + 1, corner + nx])
-        return np.ascontiguousarray(np.stack([below, above], 1).reshape(-1, 3), np.int32)
+        """(t, 3), counter-clockwise from above; 2 c and 2 c + 1 make up a cell, or a coarse tile."""
+        return far.triangles(self.height.shape, self.coarse)[0]
+
+    @property
+    def mesh_kind(self) -> U8:
+        """Kind (t / 2,) of each pair of triangles."""
+        return far.kinds(self.kind, self.coarse)
 
     def _surface(self, xy: F64) -> F64:
         xy = np.ascontiguousarray(xy, float).reshape(-1, 2)

@@ -139,14 +139,16 @@ def test_no_reader_meets_half_a_file(folder, monkeypatch):
 
 
 def test_a_fresh_process_builds_the_same_bytes(folder):
-    code = (
-        "import hashlib, numpy as np; from scenarios import spec; from sim.scene.roads import Road; "
-        "from sim.scene.terrain import build_terrain; "
-        "t = build_terrain(spec.Terrain(cell=0.5, roughness='D', "
-        "layers=[{'kind': 'hills', 'density': 50}]), "
-        "[Road(np.array([[-9.0, 0.0], [9.0, 1.0]]), 4.0)], (-6.0, -5.0, 6.0, 5.0), np.random.SeedSequence(7)); "
-        "print(hashlib.sha256(t.height.tobytes() + t.kind.tobytes()).hexdigest())"
-    )
+    code = """
+import hashlib, numpy as np
+from scenarios import spec
+from sim.scene.roads import Road
+from sim.scene.terrain import build_terrain
+ground = spec.Terrain(cell=0.5, roughness="D", layers=[{"kind": "hills", "density": 50}])
+road = Road(np.array([[-9.0, 0.0], [9.0, 1.0]]), 4.0)
+t = build_terrain(ground, [road], (-6.0, -5.0, 6.0, 5.0), np.random.SeedSequence(7))
+print(hashlib.sha256(t.height.tobytes() + t.kind.tobytes()).hexdigest())
+"""
     environment = {**os.environ, "DATMO_CACHE_DIR": "off"}
     said = subprocess.run(
         [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True
