@@ -12,6 +12,12 @@ from scenarios.spec import Scenario
 ROOT = Path(__file__).parents[1]
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _own_cache(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """Grounds that tests build are kept for the session only, wherever the environment says nothing else."""
+    os.environ.setdefault("DATMO_CACHE_DIR", str(tmp_path_factory.mktemp("cache")))
+
+
 @pytest.fixture(scope="session")
 def tiny() -> Scenario:
     """Real traffic, real rays, little ground: quick to build and quick to play."""

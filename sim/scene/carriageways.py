@@ -14,6 +14,7 @@ from sim.scene.roads import Road
 JOINT = 0.6  # a lane goes on in one that begins within this [m] ...
 TURN = np.deg2rad(10.0)  # ... and turns by no more than this there
 SEAM = 0.6  # lanes with a strip narrower than this between them lie side by side [m]
+BLEND = 15.0  # length over which what is left of a gap between two lanes is made up for [m]
 STEP = 1.0  # spacing of the points of a joined line [m]
 
 
@@ -101,7 +102,17 @@ def _chained(roads: Sequence[Road]) -> list[tuple[F64, float]]:
         if i not in after and j not in after.values():
             after[i] = j
     runs = _runs(len(roads), after)
-    return [(np.vstack([roads[k].centerline for k in run]), roads[run[0]].width) for run in runs]
+    return [(_strung([roads[k].centerline for k in run]), roads[run[0]].width) for run in runs]
+
+
+def _strung(lines: list[F64]) -> F64:
+    """Lines one after the other; where one begins beside the end of the last it is drawn over to it."""
+    whole = lines[0]
+    for line in lines[1:]:
+        arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
+        drawn = line + np.clip(1 - arc / BLEND, 0.0, 1.0)[:, None] * (whole[-1] - line[0])
+        whole = np.vstack([whole, drawn[1:]])
+    return whole
 
 
 def _runs(count: int, after: dict[int, int]) -> list[list[int]]:

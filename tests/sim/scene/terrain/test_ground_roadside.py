@@ -142,3 +142,12 @@ def test_offsets_are_to_the_left_and_places_count_segments():
     line = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0]])
     found = offsets(line, np.array([[5.0, 2.0], [12.0, 5.0], [10.0, 13.0]]))
     assert found == pytest.approx(np.array([[2, 2, 0.5], [2, -2, 1.5], [3, 0, 2]]))
+
+
+def test_lanes_that_miss_each_other_by_a_little_join_without_a_jog():
+    first = np.column_stack([np.arange(0.0, 40.5, 0.5), np.zeros(81)])
+    second = np.column_stack([np.arange(40.0, 80.5, 0.5), np.full(81, 0.5)])
+    (way,) = carriageways([Road(first, 4.0), Road(second, 4.0)])
+    heading = np.arctan2(*np.diff(way.line, axis=0).T[::-1])
+    assert np.abs(np.diff(heading)).max() < 0.04
+    assert way.line[-1] == pytest.approx([80.0, 0.5])
