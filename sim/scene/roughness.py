@@ -22,6 +22,8 @@ of the variance 4 C (1 / n1 - 1 / n2) which its profiles hold within the band.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from scipy import fft
 
@@ -77,21 +79,40 @@ def surface_psd(n: F64, step: float, roughness: str, low: float, high: float) ->
 def rough_field(shape: tuple[int, int], cell: float, roughness: str, seed: np.random.SeedSequence) -> F64:
     """Heights (ny, nx) [m] of one draw of the field, of mean zero over its own period.
 
-    White noise is coloured by sqrt(S): its sum over a bin's area makes the variance. The field is
-    periodic, and the period is wider than the grid by at least half the longest wave, so that
-    opposite edges are not joined.
-
     Args:
         shape: rows (y) and columns (x). cell: spacing [m].
     """
-    if degree(roughness) == 0:
-        return np.zeros(shape)
+    return rough_fields(shape, cell, [(roughness, seed)])[0]
+
+
+def rough_fields(
+    shape: tuple[int, int], cell: float, draws: Sequence[tuple[str, np.random.SeedSequence]]
+) -> list[F64]:
+    """Fields of several classes and seeds on one grid, as `rough_field` gives each.
+
+    White noise is coloured by sqrt(S): its sum over a bin's area makes the variance. The field is
+    periodic, and the period is wider than the grid by at least half the longest wave, so that
+    opposite edges are not joined. A class is a multiple of class A, by a power of two.
+    """
     low, high = band(cell)
     room = [max(WAVES / low, n * cell + 0.5 / low) for n in shape]
     ny, nx = (fft.next_fast_len(int(np.ceil(r / cell)), real=True) for r in room)
+    gain: F64 | None = None
+    fields = []
+    for roughness, seed in draws:
+        factor = np.sqrt(degree(roughness) / degree("A"))
+        if factor == 0:
+            fields.append(np.zeros(shape))
+            continue
+        gain = _gain(ny, nx, cell, low, high) if gain is None else gain
+        noise = fft.rfft2(np.random.default_rng(seed).standard_normal((ny, nx)))
+        field = fft.irfft2(noise * (factor * gain), s=(ny, nx))
+        fields.append(np.ascontiguousarray(field[: shape[0], : shape[1]]))
+    return fields
+
+
+def _gain(ny: int, nx: int, cell: float, low: float, high: float) -> F64:
+    """What colours white noise (ny, nx) to class A, over the bins of its real transform."""
     n = np.hypot(fft.fftfreq(ny, cell)[:, None], fft.rfftfreq(nx, cell)[None, :])
     step = 1 / (cell * np.sqrt(nx * ny))
-    gain = np.sqrt(surface_psd(n, step, roughness, low, high)) / cell
-    noise = np.random.default_rng(seed).standard_normal((ny, nx))
-    field = fft.irfft2(fft.rfft2(noise) * gain, s=(ny, nx))
-    return np.ascontiguousarray(field[: shape[0], : shape[1]])
+    return np.asarray(np.sqrt(surface_psd(n, step, "A", low, high)) / cell)

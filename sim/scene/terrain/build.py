@@ -12,7 +12,7 @@ from datmo.messages import Kind
 from scenarios import spec
 from scenarios.spec import layers as kinds
 from sim.scene.roads import Road, beyond_edge
-from sim.scene.roughness import rough_field
+from sim.scene.roughness import rough_fields
 from sim.scene.terrain import cache, far, roadside, shapes, strewn
 from sim.scene.terrain.bank import lean
 from sim.scene.terrain.file import under
@@ -69,10 +69,11 @@ def _raise(
     if roads and sidewalk:
         beyond = roadside.paved(beyond, grid)
     share = roadside.smooth_step((beyond - sidewalk) / terrain.shoulder)
-    height = share * rough_field(grid.shape, grid.cell, terrain.roughness, _stream(seed, FIELD))
+    draws = [(terrain.roughness, _stream(seed, FIELD)), (terrain.road_roughness, _stream(seed, ROAD))]
+    rough = rough_fields(grid.shape, grid.cell, draws if roads else draws[:1])
+    height = share * rough[0]
     if roads:
-        smooth = rough_field(grid.shape, grid.cell, terrain.road_roughness, _stream(seed, ROAD))
-        height += (1 - share) * smooth
+        height += (1 - share) * rough[1]
     height += terrain.grade * grid.y
     height += terrain.cross_slope * grid.x
     if terrain.file is not None:

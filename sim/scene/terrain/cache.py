@@ -88,9 +88,10 @@ def _read(path: Path, shape: tuple[int, int]) -> tuple[F32, U8] | None:
     try:
         with np.load(path, allow_pickle=False) as file:
             height, kind = file["height"], file["kind"]
-        os.utime(path)
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
         return None
+    with contextlib.suppress(OSError):  # used: not the first to go
+        os.utime(path)
     right = height.shape == shape and kind.shape == (shape[0] - 1, shape[1] - 1)
     typed = height.dtype == np.float32 and kind.dtype == np.uint8
     return (height, kind) if right and typed else None
@@ -111,8 +112,8 @@ def _write(path: Path, height: F32, kind: U8) -> None:
 
 
 def _trim(where: Path, keep: Path) -> None:
-    """Delete the grounds unused for longest until all fit, but not the newest."""
-    files = [(p.stat(), p) for p in where.glob("*.npz")]
+    """Delete what was unused for longest, and what a killed process left, until all fits; not `keep`."""
+    files = [(p.stat(), p) for ending in ("*.npz", "*.part") for p in where.glob(ending)]
     total = sum(stat.st_size for stat, _ in files)
     for stat, path in sorted(files, key=lambda f: f[0].st_mtime_ns):
         if total <= MOST_BYTES:

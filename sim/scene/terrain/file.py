@@ -13,6 +13,9 @@ from sim.scene.terrain.grid import Area, Grid
 from sim.scene.terrain.heightmap import MAPS, read_map
 from sim.scene.terrain.meshfile import MESHES, read_mesh
 
+HIGHEST = 9000.0
+"""More than any ground on Earth, and still fine to half a millimetre in float32 [m]."""
+
 
 def under(file: spec.TerrainFile, grid: Grid) -> F64:
     """Heights (ny, nx) [m] of the file's ground at the nodes of the grid.
@@ -35,7 +38,13 @@ def under(file: spec.TerrainFile, grid: Grid) -> F64:
     found = read_map(file, path) if ending in MAPS else read_mesh(file, path)
     _check_extent(file, found.area, grid.area)
     x0, y0, x1, y1 = found.area
-    return found.heights(np.clip(grid.x, x0, x1), np.clip(grid.y, y0, y1))
+    height = found.heights(np.clip(grid.x, x0, x1), np.clip(grid.y, y0, y1))
+    if np.abs(height).max() > HIGHEST:
+        raise ScenarioError(
+            f"terrain.file {file.path!r}: heights from {height.min():.4g} to {height.max():.4g} m; "
+            f"they must be within {HIGHEST:.0f} m of 0; set height_scale and height_offset"
+        )
+    return height
 
 
 def _check_extent(file: spec.TerrainFile, has: Area, needs: Area) -> None:

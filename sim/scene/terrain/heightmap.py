@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from PIL import Image, UnidentifiedImageError
+from PIL import Image
 
 from datmo.arrays import F64, Array
 from datmo.errors import ScenarioError
@@ -115,8 +115,8 @@ def _read_npy(path: Path) -> Array:
 def _read_png(path: Path) -> Array:
     try:
         with Image.open(path) as image:
-            return np.asarray(image)
-    except (OSError, UnidentifiedImageError, SyntaxError, ValueError) as error:
+            return np.asarray(image.convert("RGB") if image.mode == "P" else image)
+    except (OSError, SyntaxError, ValueError, Image.DecompressionBombError) as error:
         raise ScenarioError(f"height map {path}: it cannot be read ({error}); give a grey PNG") from None
 
 

@@ -6,6 +6,7 @@ import pytest
 from datmo.errors import SimulationError
 from scenarios import spec
 from sim.scene.realised import bands, periodogram, realised_class, smoothed
+from sim.scene.roads import Road
 from sim.scene.roughness import CLASSES, degree
 from sim.scene.terrain import build_terrain
 
@@ -24,6 +25,16 @@ def test_each_class_realises_itself_along_and_across(roughness):
         assert found.roughness == roughness
         assert found.degree == pytest.approx(degree(roughness), rel=0.12)
         assert found.exponent == pytest.approx(-2, abs=0.08)
+
+
+def test_road_and_field_of_one_ground_each_realise_their_own():
+    road = Road(np.array([[-50.0, 0.0], [450.0, 0.0]]), 16.0)
+    ground = spec.Terrain(roughness="E", road_roughness="B", cell=0.5)
+    terrain = build_terrain(ground, [road], (0, -60, 400, 60), np.random.SeedSequence(1))
+    y = np.abs(terrain.y0 + terrain.cell * np.arange(len(terrain.height)))
+    assert realised_class(terrain.height[y < 8], 0.5).roughness == "B"
+    assert realised_class(terrain.height[y > 11.5], 0.5).roughness == "E"
+    assert terrain.roughness_at(np.array([[100.0, 0.0], [100.0, 30.0]])).tolist() == ["B", "E"]
 
 
 def test_a_wave_holds_half_its_amplitude_squared():

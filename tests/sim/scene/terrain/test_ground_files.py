@@ -243,6 +243,15 @@ def test_what_a_map_cannot_tell_must_be_said(tmp_path):
         built(tmp_path / "map.png", pixel=1.0, height_scale=1.0)
 
 
+def test_a_palette_is_no_height_and_a_wrong_scale_is_told(tmp_path):
+    Image.fromarray(np.zeros((40, 40), np.uint8)).convert("P").save(tmp_path / "map.png")
+    with pytest.raises(ScenarioError, match="save it as grey"):
+        built(tmp_path / "map.png", pixel=1.0, height_scale=1.0)
+    np.save(tmp_path / "map.npy", pixels() * 1e300)
+    with pytest.raises(ScenarioError, match="set height_scale"):
+        built(tmp_path / "map.npy", pixel=1.0)
+
+
 def test_a_scenario_finds_its_file_from_its_own_folder(tmp_path, monkeypatch):
     (tmp_path / "sub").mkdir()
     np.save(tmp_path / "sub" / "map.npy", pixels())
