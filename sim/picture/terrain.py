@@ -19,7 +19,8 @@ STEEP = 0.5
 """Slope to which the steepest fiftieth of the ground is raised, at most `MOST_RAISED` times."""
 MOST_RAISED = 20.0
 ASIDE = np.array([-0.45, -1.0, 0.62])
-"""From the middle of the ground towards the eye, in half sides of the ground."""
+AWAY = 2.1
+"""From the middle of the ground towards the eye, and how far, in half sides of the ground."""
 
 
 def terrain_picture(terrain: Terrain, pixels: int = PIXELS, exaggerate: float | None = None) -> U8:
@@ -54,7 +55,7 @@ def terrain_view(
         np.append(middle, terrain.height_at(middle[None])) if target is None else np.asarray(target, float)
     )
     half = max(x1 - x0, y1 - y0) / 2
-    eye = target + half * ASIDE * 1.6 if eye is None else np.asarray(eye, float)
+    eye = target + half * ASIDE * AWAY if eye is None else np.asarray(eye, float)
     directions, shape = _pinhole(target - eye, pixels, fov_deg)
     mesh = Mesh(terrain.vertices, terrain.triangles)
     origins = np.ascontiguousarray(np.broadcast_to(eye, directions.shape), np.float32)
