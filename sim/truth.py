@@ -12,7 +12,7 @@ from datmo.messages import Boxes, LostRays, Relief, Truth, visibility
 from sim.scan.bodies import Body
 from sim.scan.caster import Hits
 from sim.scan.embree import Mesh
-from sim.scan.merge import TERRAIN
+from sim.scan.gather import Gathered
 from sim.scan.pool import blocks, spread
 from sim.scan.surface import Surfaces
 from sim.scene.motion import Poses
@@ -32,20 +32,14 @@ def true_boxes(poses: Poses, bodies: Sequence[Body]) -> Boxes:
     return Boxes(center=center, size=size, yaw=yaw, velocity=poses.velocity, id=poses.id, kind=poses.kind)
 
 
-def ground_below(terrain: Terrain, T_world_sensor: F64, points: F64) -> F64:
+def ground_below(terrain: Terrain, T_world_sensor: F64, points: F64) -> F32:
     """z [m, sensor] (n,) at which the line through each point along the sensor's z axis meets the ground.
 
     Args:
         points: (n, 3) [m, sensor at the stamp].
     """
-    out = np.empty(len(points))
-    up = np.ascontiguousarray(T_world_sensor[:3, 2])
-
-    def fill(rows: slice) -> None:
-        world = transform(T_world_sensor, points[rows])
-        out[rows] = points[rows, 2] + terrain.along(world, up)
-
-    spread(fill, blocks(len(points)))
+    out = np.empty(len(points), np.float32)
+    spread(lambda s: terrain.below(points[s], T_world_sensor, out[s]), blocks(len(points)))
     return out
 
 
@@ -68,38 +62,35 @@ def lost_rays(hits: Hits, surfaces: Surfaces, hit: Bool, columns: int) -> LostRa
 
 def truth_of(
     hits: Hits,
-    surfaces: Surfaces,
-    hit: Bool,
+    lost: LostRays,
+    gathered: Gathered,
     height: F32,
     poses: Poses,
     bodies: Sequence[Body],
     stamp: float,
-    columns: int,
 ) -> Truth:
-    """Truth of the returns `hit` (m,) of one sweep.
+    """Truth of one sweep's returns.
 
     Args:
         height: (n,) true ground at each measured point [m, sensor].
     """
-    rays = np.flatnonzero(hit)
-    actor = np.maximum(hits.winner[rays], -1)
-    k = len(poses)
+    counts = np.bincount(gathered.actor + 1, minlength=len(poses) + 1)[1:]
     return Truth(
         boxes=true_boxes(poses, bodies),
         stamp=stamp,
         T_world_actor=poses.T_world_actor[:, -1],
-        actor=actor,
-        thing=surfaces.thing[rays],
-        kind=surfaces.kind[rays],
-        is_ground=hits.winner[rays] == TERRAIN,
+        actor=gathered.actor,
+        thing=gathered.thing,
+        kind=gathered.kind,
+        is_ground=gathered.is_ground,
         height=height,
-        normal=hits.normal[rays],
+        normal=gathered.normal,
         solo=hits.solo,
         visible=hits.visible,
-        returns=np.bincount(actor[actor >= 0], minlength=k).astype(np.int32),
+        returns=counts.astype(np.int32),
         lost_to=hits.lost_to,
         visibility=visibility(hits.solo, hits.visible),
-        lost=lost_rays(hits, surfaces, hit, columns),
+        lost=lost,
     )
 
 
@@ -114,7 +105,7 @@ def relief(terrain: Terrain, mesh: Mesh, T_world_sensor: F64, eye: F64, xy: F64)
         mesh: of the terrain. eye: (3,) optical centre [m, sensor]. xy: (g, 2) [m, sensor].
     """
     xy = np.asarray(xy, float)
-    height = ground_below(terrain, T_world_sensor, np.column_stack([xy, np.zeros(len(xy))]))
+    height = ground_below(terrain, T_world_sensor, np.column_stack([xy, np.zeros(len(xy))])).astype(float)
     world = transform(T_world_sensor, np.column_stack([xy, np.nan_to_num(height)]))
     ray = world - transform(T_world_sensor, eye[None])
     distance = np.linalg.norm(ray, axis=1)

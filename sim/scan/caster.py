@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 import numpy as np
 
 from datmo.arrays import F32, F64, I32, Bool
 from sim.scan.bodies import Body, body
 from sim.scan.culling import candidates
-from sim.scan.embree import Casts, Mesh
-from sim.scan.merge import NOTHING, TERRAIN, THING, account, contest, describe
+from sim.scan.embree import Mesh
+from sim.scan.merge import NOTHING, TERRAIN, THING, Found, View, account, contest, describe, nearer
 from sim.scan.motion import SweepMotion, sweep_motion, world_rays
 from sim.scan.pattern import Pattern
-from sim.scan.pool import blocks, spread
+from sim.scan.pool import blocks, groups, spread
 from sim.scene.motion import Poses
 
-MIN_RANGE = 0.9
-"""Nearer than this the sensor gives no return [m]; what stands there still blocks the ray."""
+GROUP = 8
+"""Actors that one thread casts at in one go."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +48,26 @@ class Hits:
     lost_to: I32
 
 
+def _call(job: Callable[[], Any]) -> Any:
+    return job()
+
+
+@dataclass(frozen=True, eq=False)
+class Attempt:
+    """What the rays that may meet some actors, from row `first` on, met of them.
+
+    Those of the i-th are rows start[i] .. start[i + 1] of ray, distance [m], triangle (-1 missed) and
+    normal [actor].
+    """
+
+    first: int
+    start: I32
+    ray: I32
+    distance: F32
+    triangle: I32
+    normal: F32
+
+
 class Caster:
     """Casts sweeps at a static terrain, static things and moving bodies; the nearest hit wins.
 
@@ -54,8 +76,9 @@ class Caster:
 
     Args:
         pattern: the rays. terrain: in the world. things: in the world, or None.
-        max_range: [m]. blind: (L, C) rays that the ego's own body takes; they meet nothing and
-            count nowhere. bodies: the body of an asset key.
+        limits: nearest and farthest that the sensor measures [m]; what stands nearer still blocks
+            the ray. blind: (L, C) rays that the ego's own body takes; they meet nothing and count
+            nowhere. bodies: the body of an asset key.
     """
 
     def __init__(
@@ -63,53 +86,67 @@ class Caster:
         pattern: Pattern,
         terrain: Mesh,
         things: Mesh | None,
-        max_range: float,
+        limits: tuple[float, float],
         blind: Bool,
         bodies: Callable[[str], Body] = body,
     ) -> None:
-        self.pattern, self.max_range, self.blind = pattern, float(max_range), blind
-        self._terrain, self._things, self._bodies = terrain, things, bodies
+        self.pattern, self.blind, self._bodies = pattern, blind, bodies
+        self._nearest, self._farthest = limits
+        self._static = [(terrain, TERRAIN)] + ([] if things is None else [(things, THING)])
+        self._reach = np.where(blind.ravel(), -1.0, self._farthest).astype(np.float32)
 
     def cast(self, poses: Poses, T_ego_sensor: F64) -> Hits:
         """What every ray of one sweep meets, and how many rays each actor won and lost."""
         motion = sweep_motion(self.pattern, poses, T_ego_sensor)
-        distance, winner, triangle, normal = self._static(motion)
-        bodies = [self._bodies(key) for key in poses.asset]
-
-        def at_actor(row: int) -> tuple[I32, Casts]:
-            T_wa = poses.T_world_actor[row]
-            ray, o, d = candidates(self.pattern, self.blind, motion, T_wa, bodies[row], self.max_range)
-            casts = bodies[row].mesh.cast(o, d)
-            hit = (casts.triangle >= 0) & (casts.distance <= self.max_range)
-            return ray[hit], Casts(casts.distance[hit], casts.triangle[hit], casts.normal[hit])
-
-        attempts = spread(at_actor, range(len(poses)))
-        for row, (ray, casts) in enumerate(attempts):
-            contest(row, ray, casts, distance, winner, triangle, normal)
-        solo, visible, lost_to = account(
-            [ray for ray, _ in attempts], [c.distance for _, c in attempts], winner, MIN_RANGE
+        view = self.pattern.directions, motion.T_world_sensor, motion.T_stamp_sensor, motion.weight
+        m, k = len(self._reach), len(poses)
+        found = (
+            np.empty(m, np.float32),
+            np.empty(m, np.int32),
+            np.empty(m, np.int32),
+            np.empty((m, 3), np.float32),
+            np.empty(m, np.float32),
         )
-        cosine = describe(self.pattern, motion, poses.T_world_actor, winner, normal)
-        return Hits(distance, winner, triangle, normal, cosine, motion, solo, visible, lost_to)
+        bodies = [self._bodies(key) for key in poses.asset]
+        actors: list[Callable[[], Any]] = [
+            partial(self._at_actors, rows, motion, poses, bodies) for rows in groups(k, GROUP)
+        ]
+        static: list[Callable[[], Any]] = [
+            partial(self._at_static, rays, motion, view, found) for rays in blocks(m)
+        ]
+        attempts: list[Attempt] = spread(_call, actors + static)[: len(actors)]
+        for a in attempts:
+            contest(a.first, a.start, a.ray, (a.distance, a.triangle), found)
+        lost_to = np.zeros((k, k + 2), np.int32)
+        T_wa = np.ascontiguousarray(poses.T_world_actor)
 
-    def _static(self, motion: SweepMotion) -> tuple[F32, I32, I32, F32]:
-        """Distance, winner, triangle and normal [world] of what stands still, for every ray."""
-        o, d = world_rays(self.pattern, motion)
-        blind, m = self.blind.ravel(), len(o)
-        distance, winner = np.full(m, np.inf, np.float32), np.full(m, NOTHING, np.int32)
-        triangle, normal = np.full(m, -1, np.int32), np.zeros((m, 3), np.float32)
+        def count(a: Attempt) -> None:
+            hit = a.distance, a.triangle, a.normal
+            account(a.first, a.start, a.ray, hit, T_wa, view, self._nearest, found, lost_to)
 
-        def at_block(rays: slice) -> None:
-            for mesh, name in ((self._terrain, TERRAIN), (self._things, THING)):
-                if mesh is None:
-                    continue
-                casts = mesh.cast(o[rays], d[rays])
-                beats = (casts.triangle >= 0) & (casts.distance <= self.max_range)
-                beats &= (casts.distance < distance[rays]) & ~blind[rays]
-                distance[rays][beats] = casts.distance[beats]
-                winner[rays][beats] = name
-                triangle[rays][beats] = casts.triangle[beats]
-                normal[rays][beats] = casts.normal[beats]
+        spread(count, attempts)
+        solo, visible = lost_to.sum(1, dtype=np.int32), lost_to.diagonal().copy()
+        np.fill_diagonal(lost_to, 0)
+        return Hits(*found, motion, solo, visible, lost_to)
 
-        spread(at_block, blocks(m))
-        return distance, winner, triangle, normal
+    def _at_static(self, rays: slice, motion: SweepMotion, view: View, found: Found) -> None:
+        """Cast a block of rays at what stands still."""
+        o, d = world_rays(self.pattern, motion, rays)
+        distance, winner, triangle, normal = found[0][rays], found[1][rays], found[2][rays], found[3][rays]
+        distance[:], winner[:] = self._reach[rays], NOTHING
+        for mesh, name in self._static:
+            casts = mesh.cast(o, d, distance.copy())
+            nearer(name, (casts.distance, casts.triangle, casts.normal), distance, winner, triangle, normal)
+        describe(rays.start, rays.stop, view, found)
+
+    def _at_actors(self, rows: slice, motion: SweepMotion, poses: Poses, bodies: Sequence[Body]) -> Attempt:
+        """Cast at a group of actors the rays that may meet them."""
+        T_wa, some = poses.T_world_actor[rows], bodies[rows]
+        may = candidates(self.pattern, self.blind, motion, T_wa, some, self._farthest)
+        distance = np.full(len(may.ray), self._farthest, np.float32)
+        triangle, normal = np.empty(len(may.ray), np.int32), np.empty((len(may.ray), 3), np.float32)
+        for i, one in enumerate(some):
+            mine = slice(may.start[i], may.start[i + 1])
+            casts = one.mesh.cast(may.origins[mine], may.directions[mine], distance[mine])
+            triangle[mine], normal[mine] = casts.triangle, casts.normal
+        return Attempt(rows.start, may.start, may.ray, distance, triangle, normal)

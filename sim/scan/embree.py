@@ -11,7 +11,7 @@ from embreex.rtcore_scene import EmbreeScene
 from datmo.arrays import F32, I32
 from datmo.errors import SimulationError
 
-MISS = np.float32(1e37)  # what Embree leaves in tfar
+MISS = np.float32(1e37)  # as far as Embree looks if not told
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,7 +19,7 @@ class Casts:
     """What n rays met first.
 
     Attributes:
-        distance: (n,) along the ray [m]; at least `MISS` where nothing was met.
+        distance: (n,) along the ray [m]; where nothing was met, how far was looked.
         triangle: (n,) row of the mesh's triangles, -1 nothing.
         normal: (n, 3) of the triangle, counter-clockwise, not of unit length, zeros at a miss.
     """
@@ -54,13 +54,19 @@ class Mesh:
         self._geometry = TriangleMesh(self._scene, self.vertices, self.triangles)
         self.cast(np.zeros((1, 3), np.float32), np.array([[0, 0, 1]], np.float32))  # builds the tree now
 
-    def cast(self, origins: F32, directions: F32) -> Casts:
+    def cast(self, origins: F32, directions: F32, reach: F32 | None = None) -> Casts:
         """Nearest hit of each ray.
 
         Args:
             origins: (n, 3) [m]. directions: (n, 3) unit.
+            reach: (n,) how far each ray looks [m], `MISS` if not given; it is written over and
+                becomes `Casts.distance`.
         """
         if not len(origins):
             return Casts(np.zeros(0, np.float32), np.zeros(0, np.int32), np.zeros((0, 3), np.float32))
-        hit = self._scene.run(origins, directions, output=1)
+        hit = self._scene.run(origins, directions, dists=reach, output=1)
         return Casts(hit["tfar"], hit["primID"], hit["Ng"])
+
+    def run(self, origins: F32, directions: F32) -> I32:
+        """Nothing but Embree's own cast: the row (n,) of the triangle each ray meets, -1 none."""
+        return np.asarray(self._scene.run(origins, directions))

@@ -2,112 +2,132 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from numba import njit
 
 from datmo.arrays import F32, F64, I32
-from sim.scan.embree import Casts
-from sim.scan.motion import SweepMotion
-from sim.scan.pattern import Pattern
-from sim.scan.pool import spread
 from sim.scene.motion import BLOCK
 
 NOTHING, TERRAIN, THING = -1, -2, -3
 
+Found = tuple[F32, I32, I32, F32, F32]
+"""Per ray: distance, winner, triangle, normal and cosine, as in `sim.scan.caster.Hits`."""
+View = tuple[F64, F64, F64, F64]
+"""Directions [sensor], T_world_sensor, T_stamp_sensor and weight of each column."""
 
-def contest(row: int, ray: I32, casts: Casts, distance: F32, winner: I32, triangle: I32, normal: F32) -> None:
-    """Give actor `row` the rays on which it is nearest so far; at a tie the earlier one keeps it.
 
-    Changes `distance`, `winner`, `triangle` and `normal` (m, ...) in place; normals of actors are
-    left in the actor frame.
+@njit(cache=True, nogil=True)
+def nearer(
+    name: int, hit: tuple[F32, I32, F32], distance: F32, winner: I32, triangle: I32, normal: F32
+) -> None:
+    """Give `name` the rays on which it was hit nearer than `distance`, or where nothing was met yet.
+
+    Args:
+        hit: distance, triangle (-1 none) and normal [world] of each ray.
     """
-    beats = casts.distance < distance[ray]
-    won = ray[beats]
-    distance[won], winner[won] = casts.distance[beats], row
-    triangle[won], normal[won] = casts.triangle[beats], casts.normal[beats]
-
-
-def account(
-    rays: Sequence[I32], distances: Sequence[F32], winner: I32, min_range: float
-) -> tuple[I32, I32, I32]:
-    """solo (k,), visible (k,), lost_to (k, k + 2) from the rays that hit each actor within range.
-
-    A hit nearer than `min_range` could not have been measured and counts in neither.
-    """
-    k = len(rays)
-    solo, lost_to = np.zeros(k, np.int32), np.zeros((k, k + 2), np.int32)
-    for row in range(k):
-        by = winner[rays[row][distances[row] >= min_range]]
-        solo[row] = len(by)
-        column = np.where(by == THING, k, np.where(by == TERRAIN, k + 1, by))
-        lost_to[row] = np.bincount(column, minlength=k + 2)
-    visible = lost_to.diagonal().copy() if k else np.zeros(0, np.int32)
-    lost_to[np.arange(k), np.arange(k)] = 0
-    return solo, visible, lost_to
+    for r in range(len(distance)):
+        d = hit[0][r]
+        if hit[1][r] >= 0 and (d < distance[r] or winner[r] == NOTHING):
+            distance[r], winner[r], triangle[r] = d, name, hit[1][r]
+            for i in range(3):
+                normal[r, i] = hit[2][r, i]
 
 
 @njit(cache=True, nogil=True)
 def _face(
-    d: F64,
-    T_ws: F64,
-    T_stamp: F64,
-    weight: F64,
-    T_wa: F64,
-    winner: I32,
-    normal: F32,
-    cosine: F32,
-    start: int,
-    stop: int,
+    r: int, d: F64, T_ws: F64, T_stamp: F64, x: float, y: float, z: float, normal: F32, cosine: F32
 ) -> None:
-    """Turn normals of rings start..stop to the sensor frame at the stamp, facing the sensor."""
-    C = len(T_ws)
-    n, e = np.empty(3), np.empty(3)
-    for ring in range(start, stop):
-        for c in range(C):
-            r = ring * C + c
-            if winner[r] == -1:
+    """Write the normal (x, y, z) [world] of what ray r met, and the cosine of its incidence.
+
+    The normal becomes unit, faces the sensor and is in its frame at the stamp. (Whole arrays and
+    an index: a view of a row costs more than all the sums here.)
+    """
+    C = d.shape[1]
+    ring = r // C
+    c = r - ring * C
+    u = T_ws[c, 0, 0] * x + T_ws[c, 1, 0] * y + T_ws[c, 2, 0] * z
+    v = T_ws[c, 0, 1] * x + T_ws[c, 1, 1] * y + T_ws[c, 2, 1] * z
+    w = T_ws[c, 0, 2] * x + T_ws[c, 1, 2] * y + T_ws[c, 2, 2] * z
+    size = np.sqrt(u * u + v * v + w * w)
+    along = (u * d[ring, c, 0] + v * d[ring, c, 1] + w * d[ring, c, 2]) / size
+    cosine[r] = min(abs(along), 1.0)
+    s = -1.0 / size if along > 0 else 1.0 / size
+    for i in range(3):
+        normal[r, i] = s * (T_stamp[c, i, 0] * u + T_stamp[c, i, 1] * v + T_stamp[c, i, 2] * w)
+
+
+@njit(cache=True, nogil=True)
+def describe(start: int, stop: int, view: View, found: Found) -> None:
+    """Describe what stands still and was met by rays start..stop: normals [world] become those of `Hits`.
+
+    Rays that met nothing get an infinite distance, and no normal.
+    """
+    distance, winner, triangle, normal, cosine = found
+    d, T_ws, T_stamp, _ = view
+    for r in range(start, stop):
+        if winner[r] == NOTHING:
+            distance[r], triangle[r], cosine[r] = np.inf, -1, 0.0
+            for i in range(3):
+                normal[r, i] = 0.0
+            continue
+        _face(r, d, T_ws, T_stamp, normal[r, 0], normal[r, 1], normal[r, 2], normal, cosine)
+
+
+@njit(cache=True, nogil=True)
+def contest(first: int, start: I32, ray: I32, hit: tuple[F32, I32], found: Found) -> None:
+    """Give actors first, first + 1, ... the rays on which they are nearest so far.
+
+    At a tie the earlier keeps the ray.
+
+    Args:
+        start: (k + 1,) rows of each actor in `ray` and `hit` (distance, triangle; -1 none).
+    """
+    distance, winner, triangle = found[0], found[1], found[2]
+    far, at = hit
+    for a in range(len(start) - 1):
+        for n in range(start[a], start[a + 1]):
+            r = ray[n]
+            if at[n] >= 0 and far[n] < distance[r]:
+                distance[r], winner[r], triangle[r] = far[n], first + a, at[n]
+
+
+@njit(cache=True, nogil=True)
+def account(
+    first: int,
+    start: I32,
+    ray: I32,
+    hit: tuple[F32, I32, F32],
+    T_wa: F64,
+    view: View,
+    min_range: float,
+    found: Found,
+    lost_to: I32,
+) -> None:
+    """Count who won the rays that hit actors first, first + 1, ..., and describe the rays they won.
+
+    A hit nearer than `min_range` could not have been measured and is not counted.
+
+    Args:
+        hit: distance, triangle (-1 none) and normal [actor]. T_wa: (k, B + 1, 4, 4) of all actors.
+        lost_to: (k, k + 2) counts; what an actor won itself stands on the diagonal.
+    """
+    winner, normal, cosine = found[1], found[3], found[4]
+    (d, T_ws, T_stamp, weight), (distance, triangle, faces) = view, hit
+    C, k, n = d.shape[1], len(T_wa), np.empty(3)
+    for row in range(first, first + len(start) - 1):
+        for m in range(start[row - first], start[row - first + 1]):
+            if triangle[m] < 0:
                 continue
+            r = ray[m]
+            by = winner[r]
+            if distance[m] >= min_range:
+                lost_to[row, k if by == THING else k + 1 if by == TERRAIN else by] += 1
+            if by != row:
+                continue
+            b, w = r % C // BLOCK, weight[r % C]
             for i in range(3):
-                n[i] = normal[r, i]
-            if winner[r] >= 0:
-                a, b, w = winner[r], c // BLOCK, weight[c]
-                for i in range(3):
-                    e[i] = 0.0
-                    for j in range(3):
-                        e[i] += (T_wa[a, b, i, j] + w * (T_wa[a, b + 1, i, j] - T_wa[a, b, i, j])) * n[j]
-                n[:] = e
-            for i in range(3):
-                e[i] = T_ws[c, 0, i] * n[0] + T_ws[c, 1, i] * n[1] + T_ws[c, 2, i] * n[2]
-            size = np.sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2])
-            along = (e[0] * d[ring, c, 0] + e[1] * d[ring, c, 1] + e[2] * d[ring, c, 2]) / size
-            cosine[r] = min(abs(along), 1.0)
-            s = -1.0 / size if along > 0 else 1.0 / size
-            for i in range(3):
-                normal[r, i] = s * (
-                    T_stamp[c, i, 0] * e[0] + T_stamp[c, i, 1] * e[1] + T_stamp[c, i, 2] * e[2]
-                )
-
-
-def describe(pattern: Pattern, motion: SweepMotion, T_world_actor: F64, winner: I32, normal: F32) -> F32:
-    """Cosine of incidence (m,); `normal` (m, 3) becomes unit, towards the sensor [sensor at the stamp]."""
-    cosine = np.zeros(len(winner), np.float32)
-    T_wa = np.ascontiguousarray(T_world_actor)
-
-    def face(start: int) -> None:
-        _face(
-            pattern.directions,
-            motion.T_world_sensor,
-            motion.T_stamp_sensor,
-            motion.weight,
-            T_wa,
-            winner,
-            normal,
-            cosine,
-            start,
-            start + 8,
-        )
-
-    spread(face, range(0, len(pattern.elevation), 8))
-    return cosine
+                n[i] = 0.0
+                for j in range(3):
+                    e = T_wa[row, b, i, j] + w * (T_wa[row, b + 1, i, j] - T_wa[row, b, i, j])
+                    n[i] += e * faces[m, j]
+            _face(r, d, T_ws, T_stamp, n[0], n[1], n[2], normal, cosine)

@@ -35,3 +35,8 @@ def blocks(rays: int, count: int = 16) -> list[slice]:
     """`count` fixed slices that cover `rays`, whatever the number of threads."""
     edges = [rays * i // count for i in range(count + 1)]
     return [slice(a, b) for a, b in itertools.pairwise(edges)]
+
+
+def groups(count: int, size: int) -> list[slice]:
+    """Slices of `size` that cover `count` items; the last may be shorter."""
+    return [slice(i, min(i + size, count)) for i in range(0, count, size)]

@@ -6,20 +6,33 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 
-from datmo.arrays import F32, I32, U8
+from datmo.arrays import F32, I32, I64, U8
 from datmo.messages import Kind
 from sim.scan.bodies import Body
 from sim.scan.caster import Hits
-from sim.scan.merge import TERRAIN, THING
+from sim.scan.merge import NOTHING, TERRAIN, THING
+from sim.scan.pool import blocks, spread
 from sim.scan.things import Things
 
 REFLECTIVITY = {Kind.ROAD: 0.1, Kind.SIDEWALK: 0.2, Kind.FIELD: 0.3}
 """Of the ground, diffuse, at 905 nm: asphalt, paving, grass and soil."""
-LEVEL = {Kind.ROAD: 0.22, Kind.SIDEWALK: 0.31, Kind.FIELD: 0.36, Kind.WALL: 0.24, Kind.POLE: 0.3}
+LEVEL = {
+    Kind.ROAD: 0.22,
+    Kind.SIDEWALK: 0.32,
+    Kind.FIELD: 0.36,
+    Kind.VEGETATION: 0.36,
+    Kind.TRUNK: 0.3,
+    Kind.BUILDING: 0.24,
+    Kind.WALL: 0.24,
+    Kind.POLE: 0.3,
+    Kind.SIGN: 0.44,
+    Kind.THING: 0.25,
+}
 """Mean intensity where it is not 0; with the zeros, the class means of real HDL-64 sweeps."""
 GLOSS = {Kind.PEDESTRIAN: 0.7}
-"""Mean intensity of a moving body as a share of its reflectivity; most paint throws the light away."""
+"""Mean intensity of an actor as a share of its reflectivity; most paint throws the light away."""
 PAINTED = 0.2
 
 
@@ -40,6 +53,37 @@ def _table(values: dict[Kind, float], default: float = 0.0) -> F32:
     return table
 
 
+RHO, MEAN, SHINE = _table(REFLECTIVITY), _table(LEVEL), _table(GLOSS, PAINTED)
+
+
+@njit(cache=True, nogil=True)
+def _look_up(
+    rays: tuple[int, int],
+    hits: tuple[I32, I32],
+    terrain_kind: U8,
+    tables: tuple[F32, F32, F32],
+    things: tuple[I32, U8, F32],
+    actors: tuple[U8, I64, F32],
+    out: tuple[U8, I32, F32, F32],
+) -> None:
+    """Fill kind, thing, reflectivity and level of rays start..stop; see `surfaces`."""
+    (winner, triangle), (rho, mean, shine) = hits, tables
+    for r in range(rays[0], rays[1]):
+        w, t = winner[r], triangle[r]
+        kind, thing, reflectivity, level = np.uint8(0), np.int32(-1), np.float32(0), np.float32(0)
+        if w == TERRAIN:
+            kind = terrain_kind[t // 2]
+            reflectivity, level = rho[kind], mean[kind]
+        elif w == THING:
+            kind, thing, reflectivity = things[1][t], things[0][t], things[2][t]
+            level = mean[kind]
+        elif w != NOTHING:
+            kind = actors[0][w]
+            reflectivity = actors[2][actors[1][w] + t]
+            level = shine[kind] * reflectivity
+        out[0][r], out[1][r], out[2][r], out[3][r] = kind, thing, reflectivity, level
+
+
 def surfaces(
     hits: Hits, terrain_kind: U8, things: Things | None, bodies: Sequence[Body], kinds: U8
 ) -> Surfaces:
@@ -50,21 +94,23 @@ def surfaces(
         bodies: of the k actors, and their kinds (k,).
     """
     m = len(hits.winner)
-    kind, thing = np.zeros(m, np.uint8), np.full(m, -1, np.int32)
-    ground = np.flatnonzero(hits.winner == TERRAIN)
-    kind[ground] = terrain_kind[hits.triangle[ground] // 2]
-    if things is not None:
-        rays = np.flatnonzero(hits.winner == THING)
-        kind[rays], thing[rays] = things.kind[hits.triangle[rays]], things.thing[hits.triangle[rays]]
-    reflectivity, level = _table(REFLECTIVITY)[kind], _table(LEVEL)[kind]
-    if things is not None:
-        reflectivity[rays] = things.reflectivity[hits.triangle[rays]]
-    rays = np.flatnonzero(hits.winner >= 0)
-    row = hits.winner[rays]
-    kind[rays] = kinds[row]
-    gloss = _table(GLOSS, PAINTED)
-    for k, body in enumerate(bodies):
-        mine = rays[row == k]
-        rho = body.reflectivity[hits.triangle[mine]]
-        reflectivity[mine], level[mine] = rho, gloss[kinds[k]] * rho
-    return Surfaces(kind, thing, reflectivity, level)
+    out = np.empty(m, np.uint8), np.empty(m, np.int32), np.empty(m, np.float32), np.empty(m, np.float32)
+    none = np.zeros(0, np.int32), np.zeros(0, np.uint8), np.zeros(0, np.float32)
+    listed = none if things is None else (things.thing, things.kind, things.reflectivity)
+    each = [body.reflectivity for body in bodies]
+    first = np.cumsum([0, *(len(rho) for rho in each)]).astype(np.int64)
+    actors = np.ascontiguousarray(kinds, np.uint8), first, np.concatenate([none[2], *each])
+
+    def look_up(rays: slice) -> None:
+        _look_up(
+            (rays.start, rays.stop),
+            (hits.winner, hits.triangle),
+            terrain_kind,
+            (RHO, MEAN, SHINE),
+            listed,
+            actors,
+            out,
+        )
+
+    spread(look_up, blocks(m))
+    return Surfaces(*out)

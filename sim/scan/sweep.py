@@ -5,15 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numba import njit
 
-from datmo.arrays import F32, F64, I64
+from datmo.arrays import F32, F64
 from datmo.errors import ScenarioError, SimulationError
-from datmo.messages import Relief, Scan, Truth
+from datmo.messages import Kind, Relief, Scan, Truth
 from scenarios import spec
 from sim.scan.bodies import Body, body
 from sim.scan.caster import Caster
 from sim.scan.embree import Mesh
+from sim.scan.gather import gather
+from sim.scan.luck import Luck
 from sim.scan.mask import own_body
 from sim.scan.pattern import pattern
 from sim.scan.returns import Returns, measure
@@ -22,7 +23,7 @@ from sim.scan.things import place
 from sim.scan.units import Unit, unit
 from sim.scene.motion import Poses
 from sim.scene.terrain import Terrain
-from sim.truth import ground_below, relief, truth_of
+from sim.truth import ground_below, lost_rays, relief, truth_of
 
 
 def mount(sensor: spec.Sensor) -> F64:
@@ -60,22 +61,6 @@ def unit_of(sensor: spec.Sensor) -> Unit:
     return asked
 
 
-@njit(cache=True, nogil=True)
-def _points(o: F64, d: F64, T: F64, rays: I64, distance: F32, out: F64) -> None:
-    """Points at `distance` along each ray, taken by its column's T (C, 4, 4)."""
-    C = len(T)
-    for n in range(len(rays)):
-        ring, c = rays[n] // C, rays[n] % C
-        r = distance[rays[n]]
-        x, y, z = (
-            o[ring, c, 0] + r * d[ring, c, 0],
-            o[ring, c, 1] + r * d[ring, c, 1],
-            o[ring, c, 2] + r * d[ring, c, 2],
-        )
-        for i in range(3):
-            out[n, i] = T[c, i, 0] * x + T[c, i, 1] * y + T[c, i, 2] * z + T[c, i, 3]
-
-
 class Lidar:
     """A calibrated sensor on the ego's roof.
 
@@ -104,11 +89,12 @@ class Lidar:
         self.T_ego_sensor = mount(sensor)
         self.eye = np.array([0.0, 0.0, calibrated.vertical_offset.mean()])
         self._ground = Mesh(terrain.vertices, terrain.triangles)
-        self._terrain_kind = np.ascontiguousarray(terrain.kind).ravel()
+        self._terrain_kind = terrain.mesh_kind
         self._things = place(things, terrain)
         static = None if self._things is None else self._things.mesh
         blind = own_body(self.pattern, sensor.body_mask)
-        self.caster = Caster(self.pattern, self._ground, static, sensor.range, blind, bodies)
+        self._limits = calibrated.nearest, sensor.range
+        self.caster = Caster(self.pattern, self._ground, static, self._limits, blind, bodies)
         self._last: Returns | None = None
 
     @staticmethod
@@ -128,33 +114,28 @@ class Lidar:
         places measured, in the sensor frame at the stamp; with `none` each is in the sensor frame
         at its own time. Ground truth heights are in the sensor frame at the stamp in both cases.
         """
-        C, stamp = self.pattern.columns, index / self.rate
+        stamp = index / self.rate
         hits = self.caster.cast(poses, self.T_ego_sensor)
         bodies = [self._bodies(key) for key in poses.asset]
         met = surfaces(hits, self._terrain_kind, self._things, bodies, poses.kind)
-        rng = np.random.default_rng(
-            np.random.SeedSequence(self._seed.entropy, spawn_key=(*self._seed.spawn_key, index))
-        )
-        noise = self.sensor.noise
-        returns = measure(hits, met.reflectivity, met.level, noise, self.sensor.range, rng)
-        rays = np.flatnonzero(returns.hit)
+        frame = np.random.SeedSequence(self._seed.entropy, spawn_key=(*self._seed.spawn_key, index))
+        returns = measure(hits, met, self.sensor.noise, self._limits, Luck(frame))
         T_world_sensor = hits.motion.edge[-1].copy()
-        at_stamp = self._places(hits.motion.T_stamp_sensor, rays, returns.distance)
+        got = gather(self.pattern, hits.motion.T_stamp_sensor, hits, met, returns, Kind.FALSE_RETURN)
         deskewed = self.sensor.deskew == "ego"
-        still = np.broadcast_to(np.eye(4), (C, 4, 4))
-        points = at_stamp if deskewed else self._places(np.ascontiguousarray(still), rays, returns.distance)
         scan = Scan(
-            points=points.astype(np.float32),
+            points=got.place.astype(np.float32) if deskewed else got.own,
             stamp=stamp,
             T_world_sensor=T_world_sensor,
             deskewed=deskewed,
-            intensity=returns.intensity[rays],
-            ring=(rays // C).astype(np.uint8),
-            dt=self.pattern.time[rays % C].astype(np.float32),
+            intensity=got.intensity,
+            ring=got.ring,
+            dt=got.dt,
         )
-        height = ground_below(self._terrain, T_world_sensor, at_stamp).astype(np.float32)
+        height = ground_below(self._terrain, T_world_sensor, got.place)
+        lost = lost_rays(hits, met, returns.hit, self.pattern.columns)
         self._last = returns
-        return scan, truth_of(hits, met, returns.hit, height, poses, bodies, stamp, C)
+        return scan, truth_of(hits, lost, got, height, poses, bodies, stamp)
 
     def range_image(self) -> tuple[F32, F32]:
         """Range [m] and intensity of the last sweep, (L, C) each, row 0 the top ring, 0 no return."""
@@ -166,8 +147,3 @@ class Lidar:
     def relief(self, T_world_sensor: F64, xy: F64) -> Relief:
         """True ground at places (g, 2) [m, sensor], see `sim.truth.relief`."""
         return relief(self._terrain, self._ground, T_world_sensor, self.eye, xy)
-
-    def _places(self, T: F64, rays: I64, distance: F32) -> F64:
-        out = np.empty((len(rays), 3))
-        _points(self.pattern.origins, self.pattern.directions, T, rays, distance, out)
-        return out

@@ -1,18 +1,18 @@
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from datmo.arrays import F64, Array, Bool
+from datmo.arrays import F64, Bool
 from datmo.errors import SimulationError
 from datmo.geometry import inverse
 from sim.scan import caster as casting
-from sim.scan import culling
 from sim.scan.bodies import Body
 from sim.scan.caster import Caster, Hits
+from sim.scan.culling import Candidates
 from sim.scan.embree import Mesh
 from sim.scan.merge import NOTHING, TERRAIN, THING
 from sim.scan.motion import SweepMotion, sweep_motion
@@ -31,7 +31,7 @@ UP[2, 3] = 1.73
 
 def caster_of(grid: Pattern, bodies: Bodies, things: Mesh | None = None, blind: Bool | None = None) -> Caster:
     blind = np.zeros(grid.directions.shape[:2], bool) if blind is None else blind
-    return Caster(grid, PLAIN, things, 80.0, blind, bodies)
+    return Caster(grid, PLAIN, things, (0.9, 80.0), blind, bodies)
 
 
 def crowd(kit: SimpleNamespace, grid: Pattern, seed: int) -> Poses:
@@ -53,25 +53,28 @@ def crowd(kit: SimpleNamespace, grid: Pattern, seed: int) -> Poses:
 
 
 def everything(
-    grid: Pattern, blind: Bool, motion: SweepMotion, T_wa: F64, body: Body, max_range: float
-) -> tuple[Array, Array, Array]:
-    """Every ray there is, moved into the actor's frame: no culling at all."""
-    m = 64 * grid.columns
-    out = (np.empty(m, np.int32), np.empty((m, 3), np.float32), np.empty((m, 3), np.float32))
-    n = culling._gather(
-        (grid.origins, grid.directions),
-        (grid.azimuth, grid.elevation, grid.rotor),
-        blind,
-        motion.T_world_sensor,
-        motion.edge,
-        motion.weight,
-        T_wa,
-        (body.center, 1e9, 1e12),
-        (np.full(3, -1e9), np.full(3, 1e9)),
-        out,
-    )
-    assert n == m - blind.sum()
-    return out[0][:n], out[1][:n], out[2][:n]
+    grid: Pattern, blind: Bool, motion: SweepMotion, T_wa: F64, bodies: Sequence[Body], max_range: float
+) -> Candidates:
+    """Every ray there is, moved into each actor's frame at its own time: no culling at all."""
+    ring, column = np.nonzero(~blind)
+    first = column // BLOCK
+    w = motion.weight[column][:, None, None]
+    T_ws = motion.T_world_sensor[column]
+    o, d = grid.origins[ring, column], grid.directions[ring, column]
+    origins, directions = [], []
+    for T in T_wa:
+        T_at = T[first] + w * (T[first + 1] - T[first])
+        turn = np.zeros((len(ring), 3, 4))
+        for k in range(3):  # summed as the kernel does, so that the bytes agree
+            turn[:, :, :3] += T_at[:, k, :3, None] * T_ws[:, k, None, :3]
+            turn[:, :, 3] += T_at[:, k, :3] * (T_ws[:, k, 3] - T_at[:, k, 3])[:, None]
+        x = turn[:, :, 0] * o[:, :1] + turn[:, :, 1] * o[:, 1:2] + turn[:, :, 2] * o[:, 2:] + turn[:, :, 3]
+        v = turn[:, :, 0] * d[:, :1] + turn[:, :, 1] * d[:, 1:2] + turn[:, :, 2] * d[:, 2:]
+        origins.append(x.astype(np.float32))
+        directions.append(v.astype(np.float32))
+    ray = np.tile((ring * grid.columns + column).astype(np.int32), len(T_wa))
+    start = len(ring) * np.arange(len(T_wa) + 1, dtype=np.int32)
+    return Candidates(ray, np.concatenate(origins), np.concatenate(directions), start)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -229,8 +232,7 @@ def test_threads_do_not_change_a_byte(
 ) -> None:
     poses, one = crowd(kit, coarse, 11), caster_of(coarse, bodies)
     threaded = one.cast(poses, UP)
-    for module in ("caster", "merge", "motion"):
-        monkeypatch.setattr(f"sim.scan.{module}.spread", lambda work, items: [work(item) for item in items])
+    monkeypatch.setattr(casting, "spread", lambda work, items: [work(item) for item in items])
     serial: Hits = one.cast(poses, UP)
     for field in ("distance", "winner", "triangle", "normal", "cosine", "lost_to"):
         assert getattr(threaded, field).tobytes() == getattr(serial, field).tobytes(), field

@@ -1,0 +1,1 @@
+"""Benchmarks: this project beside a named rival, interleaved in one process."""
