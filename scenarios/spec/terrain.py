@@ -7,10 +7,25 @@ from typing import Literal
 from pydantic import Field, model_validator
 
 from scenarios.spec.base import Model, Point
-from scenarios.spec.layers import Ditch, Layer, Pothole, Potholes, SpeedBump, Washboard
+from scenarios.spec.layers import Layer
 
 Roughness = Literal["flat", "A", "B", "C", "D", "E", "F", "G", "H"]
 FINEST = 0.1  # the least spacing of the height grid [m]
+NEEDS = {
+    "crest": (("length", 4), ("width", 4)),
+    "dip": (("length", 4), ("width", 4)),
+    "hill": (("radius", 2),),
+    "hills": (("radius", 2),),
+    "ramp": (("length", 1), ("width", 2)),
+    "step": (("width", 2),),
+    "washboard": (("wavelength", 4), ("width", 2)),
+    "speed_bump": (("length", 4), ("ramp", 1), ("width", 2)),
+    "pothole": (("radius", 2),),
+    "potholes": (("radius", 2),),
+    "ditch": (("width", 4),),
+    "kerb": (("sidewalk", 2),),
+}
+"""Which measures of a layer need how many cells at least, so that the grid can show them."""
 
 
 class TerrainFile(Model):
@@ -58,29 +73,17 @@ class Terrain(Model):
     def _resolved(self) -> Terrain:
         """What is finer than the grid can show would come out as something else."""
         for i, layer in enumerate(self.layers):
-            name, finest, cells = _finest(layer)
-            if finest < cells * self.cell - 1e-9:
-                finer = f"set cell to {finest / cells:.3g}, or " if finest >= cells * FINEST else ""
+            for name, cells in NEEDS.get(layer.kind, ()):
+                said = getattr(layer, name)
+                size = min(said) if isinstance(said, tuple) else said
+                if size is None or size >= cells * self.cell - 1e-9:
+                    continue
+                finer = f"set cell to {size / cells:.3g}, or " if size >= cells * FINEST else ""
                 raise ValueError(
-                    f"layers.{i} ({layer.kind}): {name} {finest} m is under {cells} cells of {self.cell} m; "
+                    f"layers.{i} ({layer.kind}): {name} {size} m is under {cells} cells of {self.cell} m; "
                     f"{finer}make it {cells * self.cell:.3g} m"
                 )
         for kind in ("bank", "kerb"):
             if sum(layer.kind == kind for layer in self.layers) > 1:
                 raise ValueError(f"layers: {kind} is there twice and holds for all roads; keep one of them")
         return self
-
-
-def _finest(layer: Layer) -> tuple[str, float, int]:
-    """The smallest measure of a layer, its name, and the cells that it needs at least."""
-    if isinstance(layer, Washboard):
-        return "wavelength", layer.wavelength, 4
-    if isinstance(layer, SpeedBump):
-        return "length", layer.length, 4
-    if isinstance(layer, Ditch):
-        return "width", layer.width, 4
-    if isinstance(layer, Pothole):
-        return "radius", layer.radius, 2
-    if isinstance(layer, Potholes):
-        return "radius", layer.radius[0], 2
-    return "", float("inf"), 0

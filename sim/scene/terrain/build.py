@@ -41,7 +41,7 @@ def build_terrain(
     """
     grid = grid_over(area, terrain.cell)
     key = cache.key_of(terrain, roads, grid, seed)
-    coarse = far.coarse_tiles(roads, grid, terrain.coarse_beyond)
+    coarse = far.coarse_tiles(roads, grid, _coarse_beyond(terrain))
     height, kind = cache.kept(key, grid.shape, lambda: _raise(terrain, roads, grid, coarse, seed))
     return Terrain(
         grid.x0,
@@ -53,6 +53,13 @@ def build_terrain(
         road_roughness=terrain.road_roughness,
         coarse=coarse,
     )
+
+
+def _coarse_beyond(terrain: spec.Terrain) -> float | None:
+    """How far from the roads the coarse mesh begins [m]: beyond all that goes with them."""
+    if terrain.coarse_beyond is None:
+        return None
+    return max(terrain.coarse_beyond, roadside.depth_of_interest(terrain.layers, terrain.shoulder))
 
 
 def _raise(

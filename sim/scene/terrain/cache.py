@@ -1,7 +1,7 @@
 """Grounds once built, kept on disk by all that they are made of.
 
 A file is named by the SHA-256 of the scenario's terrain, the roads, the grid, the seed, the content of
-a terrain file, the versions of numpy and scipy, the processor's kind, and the code that builds.
+a terrain file, the versions of numpy, scipy and numba, the processor's kind, and the code that builds.
 `DATMO_CACHE_DIR` names the folder, or says `off`.
 """
 
@@ -18,6 +18,7 @@ from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
 
+import numba
 import numpy as np
 import scipy
 
@@ -128,7 +129,8 @@ def _makers() -> bytes:
     """Who builds: the code of this package and of what it calls, and the libraries under it."""
     here = Path(__file__).parent
     code = [*sorted(here.glob("*.py")), Path(roads_code.__file__), Path(roughness_code.__file__)]
-    digest = hashlib.sha256(f"{np.__version__} {scipy.__version__} {platform.machine()}".encode())
+    versions = np.__version__, scipy.__version__, numba.__version__, platform.machine()
+    digest = hashlib.sha256(" ".join(versions).encode())
     for path in code:
         digest.update(path.read_bytes())
     return digest.digest()

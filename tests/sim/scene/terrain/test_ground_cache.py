@@ -6,6 +6,7 @@ import hashlib
 import os
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -155,6 +156,13 @@ print(hashlib.sha256(t.height.tobytes() + t.kind.tobytes()).hexdigest())
     ).stdout.strip()
     here = built()
     assert said == hashlib.sha256(here.height.tobytes() + here.kind.tobytes()).hexdigest()
+
+
+def test_many_at_once_agree_and_leave_nothing_half_done(folder):
+    with ThreadPoolExecutor(4) as pool:
+        made = list(pool.map(lambda _: built(), range(8)))
+    assert all(same(made[0], other) for other in made)
+    assert [p.suffix for p in folder.iterdir()] == [".npz"]
 
 
 def test_the_folder_is_the_platforms_own(monkeypatch, tmp_path):

@@ -84,6 +84,18 @@ def test_cells_and_tiles_cover_the_ground_once(far):
     assert len(far.mesh_kind) * 2 == len(far.triangles)
 
 
+def test_what_goes_with_the_roads_stays_fine():
+    layers = [{"kind": "kerb", "sidewalk": 6.0}, {"kind": "ditch", "offset": 12.0}]
+    near, wide = built(0.0, layers=layers), built(None, layers=layers)
+    assert near.coarse is not None
+    walk = near.kind == Kind.SIDEWALK
+    assert walk.any()
+    assert np.array_equal(near.height[:-1, :-1][walk], wide.height[:-1, :-1][walk])
+    xy = np.random.default_rng(2).uniform(AREA[:2], AREA[2:], (4000, 2))
+    hits, xy = cast_down(near, xy)
+    assert np.array_equal(near.mesh_kind[hits.triangle // 2], near.kind_at(xy))
+
+
 def test_without_roads_or_the_key_every_cell_is_fine():
     fine = built(None)
     assert fine.coarse is None

@@ -203,6 +203,11 @@ def test_potholes_keep_to_where_they_belong():
         ({"kind": "pothole", "at": [0, 0], "radius": 0.4}, "radius 0.4 m is under 2 cells"),
         ({"kind": "speed_bump", "at": [0, 0], "length": 0.9}, "length 0.9 m is under 4 cells"),
         ({"kind": "ditch", "width": 0.9, "bottom": 0.1}, "width 0.9 m is under 4 cells"),
+        ({"kind": "hills", "radius": [0.5, 3]}, "radius 0.5 m is under 2 cells"),
+        (
+            {"kind": "crest", "at": [0, 0], "height": 1, "length": 9, "width": 1},
+            "width 1.0 m is under 4 cells",
+        ),
         ({"kind": "ditch", "width": 2, "bottom": 2}, "not under the width"),
         ({"kind": "speed_bump", "at": [0, 0], "profile": "flat_top", "length": 3}, "two ramps"),
         ({"kind": "hills", "radius": [9, 3]}, "low, high"),
