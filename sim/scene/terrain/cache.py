@@ -41,7 +41,7 @@ def folder() -> Path | None:
         return None
     if said:
         return Path(said).expanduser() / "terrain"
-    home = Path.home()
+    home = Path(os.path.expanduser("~"))  # unlike Path.home() it lives without one
     if sys.platform == "win32":
         base = Path(os.environ.get("LOCALAPPDATA", home / "AppData" / "Local"))
     elif sys.platform == "darwin":
