@@ -58,6 +58,6 @@ def test_readme_begins_with_the_two_commands() -> None:
 
 def test_every_extra_and_the_command_are_there() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    assert set(project["optional-dependencies"]) == {"view", "video", "ray", "formats", "dev"}
+    assert set(project["optional-dependencies"]) == {"view", "video", "ray", "formats", "geo", "dev"}
     assert project["scripts"]["datmo"] == "eval.cli:main"
     assert project["entry-points"]["pytest11"]["datmo"] == "eval.pytest_plugin"
