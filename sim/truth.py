@@ -91,6 +91,7 @@ def truth_of(
         lost_to=hits.lost_to,
         visibility=visibility(hits.solo, hits.visible),
         lost=lost,
+        cause=gathered.cause,
     )
 
 

@@ -36,6 +36,17 @@ class Kind(IntEnum):
     FALSE_RETURN = 18
 
 
+class FalseReturn(IntEnum):
+    """What made a return that lies on no surface."""
+
+    NONE = 0
+    MIXED_EDGE = 1
+    MULTIPATH = 2
+    RAIN = 3
+    FOG = 4
+    SNOW = 5
+
+
 class Visibility(IntEnum):
     """How much of an object the sensor sees; the first class that applies."""
 

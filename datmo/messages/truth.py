@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from datmo.arrays import F32, F64, I32, U8, Bool
-from datmo.messages.base import Kind, Message, Visibility
+from datmo.messages.base import FalseReturn, Kind, Message, Visibility
 from datmo.messages.objects import Boxes
 
 HIDDEN_RAYS, HEAVY, PARTIAL = 5, 0.2, 0.8
@@ -86,6 +86,7 @@ class Truth(Message):
         lost_to: (k, k + 2) rays lost to each actor, to things, to terrain (last two columns).
         visibility: (k,) `Visibility`.
         lost: the rays that returned nothing.
+        cause: (n,) `FalseReturn` of a return that lies on no surface (kind `FALSE_RETURN`), else 0.
     """
 
     boxes: Boxes
@@ -103,6 +104,7 @@ class Truth(Message):
     lost_to: I32
     visibility: U8
     lost: LostRays
+    cause: U8 | None = None
 
     def __post_init__(self) -> None:
         k = len(self.boxes)
@@ -122,6 +124,7 @@ class Truth(Message):
             ("visibility", (k,), np.uint8),
         ):
             self._set(name, shape, dtype)
+        self._set("cause", (n,), np.uint8, default=FalseReturn.NONE)
 
 
 def visibility(solo: I32, visible: I32) -> U8:

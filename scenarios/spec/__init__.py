@@ -8,7 +8,7 @@ name says so.
 from scenarios.spec.actors import Actor, WayPoint
 from scenarios.spec.base import Model
 from scenarios.spec.pedestrians import Pedestrian
-from scenarios.spec.returns import Noise
+from scenarios.spec.returns import IDEAL, Noise, Weather
 from scenarios.spec.scenario import Bound, Scenario
 from scenarios.spec.sensor import Sensor
 from scenarios.spec.terrain import Terrain, TerrainFile
@@ -16,6 +16,7 @@ from scenarios.spec.things import Thing
 from scenarios.spec.traffic import Ego, Traffic
 
 __all__ = [
+    "IDEAL",
     "Actor",
     "Bound",
     "Ego",
@@ -29,4 +30,5 @@ __all__ = [
     "Thing",
     "Traffic",
     "WayPoint",
+    "Weather",
 ]

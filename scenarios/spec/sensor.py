@@ -8,7 +8,7 @@ from typing import Literal
 from pydantic import Field, field_validator
 
 from scenarios.spec.base import Model
-from scenarios.spec.returns import Noise
+from scenarios.spec.returns import Noise, Weather
 
 Outline = tuple[tuple[float, float], ...]
 
@@ -33,6 +33,7 @@ class Sensor(Model):
     range_bias: float = Field(0.0, ge=0, le=0.5, description="standard deviation of the lasers' biases [m]")
     deskew: Literal["none", "ego"] = Field("ego", description="take ego motion out of the points")
     noise: Noise = Noise()
+    weather: Weather = Weather()
 
     @field_validator("body_mask")
     @classmethod

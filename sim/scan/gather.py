@@ -24,7 +24,7 @@ class Gathered:
         place: (n, 3) [m, sensor at the stamp]. own: (n, 3) [m, sensor at the return's own time].
         intensity: (n,). ring: (n,). dt: (n,) [s].
         actor: (n,) row, -1 none. thing: (n,) id, -1 none. kind: (n,). is_ground: (n,).
-        normal: (n, 3) [sensor at the stamp].
+        normal: (n, 3) [sensor at the stamp]. cause: (n,) `FalseReturn`.
     """
 
     place: F64
@@ -37,6 +37,7 @@ class Gathered:
     kind: U8
     is_ground: Bool
     normal: F32
+    cause: U8
 
 
 @njit(cache=True, nogil=True)
@@ -65,13 +66,13 @@ def _label(
     met: tuple[U8, I32],
     returns: tuple[F32, U8],
     false_kind: int,
-    out: tuple[F32, I32, I32, U8, Bool, F32],
+    out: tuple[F32, I32, I32, U8, Bool, F32, U8],
 ) -> None:
     """What each return lies on; a false one lies on nothing."""
-    intensity, actor, thing, kind, is_ground, normal = out
+    intensity, actor, thing, kind, is_ground, normal, cause = out
     for n in range(len(rays)):
         r = rays[n]
-        intensity[n] = returns[0][r]
+        intensity[n], cause[n] = returns[0][r], returns[1][r]
         for i in range(3):
             normal[n, i] = hits[1][r, i]
         if returns[1][r]:
@@ -103,6 +104,7 @@ def gather(
         kind=np.empty(n, np.uint8),
         is_ground=np.empty(n, np.bool_),
         normal=np.empty((n, 3), np.float32),
+        cause=np.empty(n, np.uint8),
     )
 
     def fill(s: slice) -> None:
@@ -116,7 +118,8 @@ def gather(
             pattern.time,
             places,
         )
-        labels = out.intensity[s], out.actor[s], out.thing[s], out.kind[s], out.is_ground[s], out.normal[s]
+        flags = out.actor[s], out.thing[s], out.kind[s], out.is_ground[s]
+        labels = out.intensity[s], *flags, out.normal[s], out.cause[s]
         _label(
             rays[s],
             (hits.winner, hits.normal),

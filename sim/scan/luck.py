@@ -33,7 +33,7 @@ def _quantile(p: float) -> float:
     if abs(q) <= 0.425:
         r = 0.180625 - q * q
         above = ((59.109374720 * r + 159.29113202) * r + 50.434271938) * r + 3.3871327179
-        return q * above / (((67.187563600 * r + 78.757757664) * r + 17.895169469) * r + 1.0)
+        return float(q * above / (((67.187563600 * r + 78.757757664) * r + 17.895169469) * r + 1.0))
     r = np.sqrt(-np.log(min(p, 1.0 - p)))
     if r <= 5.0:
         r -= 1.6
@@ -43,7 +43,7 @@ def _quantile(p: float) -> float:
         r -= 5.0
         x = ((0.017337203997 * r + 0.42868294337) * r + 3.0812263860) * r + 6.6579051150
         x /= (0.012258202635 * r + 0.24197894225) * r + 1.0
-    return -x if q < 0 else x
+    return float(-x if q < 0 else x)
 
 
 @njit(cache=True, nogil=True)

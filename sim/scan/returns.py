@@ -47,6 +47,7 @@ def _report(
     surface: tuple[F32, F32],
     chance: tuple[F32, F32, F32, F32, F32],
     noise: tuple[float, float, bool, bool],
+    alpha: float,
     limits: tuple[float, float],
     out: tuple[F32, F32, Bool],
 ) -> None:
@@ -59,6 +60,8 @@ def _report(
         if not (true[r] >= nearest and nearest <= distance <= farthest) or dropped[r] < drop_out:
             continue
         power = reflectivity[r] * cosine[r] / (true[r] * true[r])
+        if alpha > 0.0:
+            power *= np.exp(-2 * alpha * true[r])
         cube = power * power * power
         if grazing and grazed[r] * (cube + FAINTEST * FAINTEST * FAINTEST) >= cube:
             continue
@@ -70,12 +73,14 @@ def _report(
         out[1][r] = np.round(mean / STEP) * STEP
 
 
-def measure(hits: Hits, met: Surfaces, noise: Noise, limits: tuple[float, float], luck: Luck) -> Returns:
+def measure(
+    hits: Hits, met: Surfaces, noise: Noise, alpha: float, limits: tuple[float, float], luck: Luck
+) -> Returns:
     """Measure one sweep.
 
     Range: the true distance plus N(0, range_std), and nothing nearer or farther than `limits`. Link
     budget of a Lambertian surface that fills the beam (the lidar equation, e.g. Wagner et al.
-    2006): power = rho cos(incidence) / R²; a return is lost with probability
+    2006): power = rho cos(incidence) / R² exp(-2 alpha R); a return is lost with probability
     1 / (1 + (power / FAINTEST)³), so dark and grazing surfaces vanish far away. Apart from that, a
     share of isolated drop-outs. The sensor reports intensity already freed from range, speckled
     around the material's level, and 0 for weak returns.
@@ -84,7 +89,8 @@ def measure(hits: Hits, met: Surfaces, noise: Noise, limits: tuple[float, float]
     changed scene.
 
     Args:
-        limits: nearest and farthest measured range [m]. luck: of this frame.
+        alpha: extinction of the air [1/m]. limits: nearest and farthest measured range [m].
+        luck: of this frame.
     """
     m = len(hits.distance)
     chance = (
@@ -94,7 +100,7 @@ def measure(hits: Hits, met: Surfaces, noise: Noise, limits: tuple[float, float]
         luck.uniform(ZERO, m),
         luck.normal(SCATTER, m),
     )
-    switches = noise.range_std, noise.drop_out, noise.grazing, noise.speckle
+    switches = noise.range_std, noise.drop_out, noise.grazing, noise.intensity
     out = np.empty(m, np.float32), np.empty(m, np.float32), np.empty(m, np.bool_)
 
     def report(rays: slice) -> None:
@@ -104,6 +110,7 @@ def measure(hits: Hits, met: Surfaces, noise: Noise, limits: tuple[float, float]
             (met.reflectivity[rays], met.level[rays]),
             (chance[0][rays], chance[1][rays], chance[2][rays], chance[3][rays], chance[4][rays]),
             switches,
+            alpha,
             limits,
             (out[0][rays], out[1][rays], out[2][rays]),
         )

@@ -12,18 +12,22 @@ from datmo.messages import Kind, Relief, Scan, Truth
 from scenarios import spec
 from sim.scan.bodies import Body, body
 from sim.scan.caster import Caster
+from sim.scan.effects.chain import bias_of, sensing
 from sim.scan.embree import Mesh
 from sim.scan.gather import gather
 from sim.scan.luck import Luck
 from sim.scan.mask import own_body
 from sim.scan.pattern import pattern
-from sim.scan.returns import Returns, measure
+from sim.scan.returns import Returns
 from sim.scan.surface import surfaces
 from sim.scan.things import place
 from sim.scan.units import Unit, unit
 from sim.scene.motion import Poses
 from sim.scene.terrain import Terrain
 from sim.truth import ground_below, lost_rays, relief, truth_of
+
+LASERS = 2**31
+"""Key of the stream from which the lasers' biases come; frames have theirs below."""
 
 
 def mount(sensor: spec.Sensor) -> F64:
@@ -61,6 +65,10 @@ def unit_of(sensor: spec.Sensor) -> Unit:
     return asked
 
 
+def _child(seed: np.random.SeedSequence, key: int) -> np.random.SeedSequence:
+    return np.random.SeedSequence(seed.entropy, spawn_key=(*seed.spawn_key, key))
+
+
 class Lidar:
     """A calibrated sensor on the ego's roof.
 
@@ -93,8 +101,10 @@ class Lidar:
         self._things = place(things, terrain)
         static = None if self._things is None else self._things.mesh
         blind = own_body(self.pattern, sensor.body_mask)
-        self._limits = calibrated.nearest, sensor.range
-        self.caster = Caster(self.pattern, self._ground, static, self._limits, blind, bodies)
+        limits = calibrated.nearest, sensor.range
+        self.caster = Caster(self.pattern, self._ground, static, limits, blind, bodies)
+        bias = bias_of(sensor, calibrated.rings, _child(seed, LASERS))
+        self._sense = sensing(sensor, self.pattern, blind, self._ground, limits, bias)
         self._last: Returns | None = None
 
     @staticmethod
@@ -118,8 +128,7 @@ class Lidar:
         hits = self.caster.cast(poses, self.T_ego_sensor)
         bodies = [self._bodies(key) for key in poses.asset]
         met = surfaces(hits, self._terrain_kind, self._things, bodies, poses.kind)
-        frame = np.random.SeedSequence(self._seed.entropy, spawn_key=(*self._seed.spawn_key, index))
-        returns = measure(hits, met, self.sensor.noise, self._limits, Luck(frame))
+        returns = self._sense(hits, met, Luck(_child(self._seed, index)))
         T_world_sensor = hits.motion.edge[-1].copy()
         got = gather(self.pattern, hits.motion.T_stamp_sensor, hits, met, returns, Kind.FALSE_RETURN)
         deskewed = self.sensor.deskew == "ego"

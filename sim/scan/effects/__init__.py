@@ -1,0 +1,1 @@
+"""What else comes back: mixed edges, multi-path, rain, snow and fog; one effect a file."""

@@ -1,0 +1,58 @@
+"""What the sensor reports of a sweep: the measurement, then every effect in its order."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from datmo.arrays import F32, Bool
+from scenarios import spec
+from sim.scan.caster import Hits
+from sim.scan.effects.air import air
+from sim.scan.effects.edges import mix_edges
+from sim.scan.effects.multipath import add_multipath
+from sim.scan.effects.weather import add_weather
+from sim.scan.embree import Mesh
+from sim.scan.luck import Luck
+from sim.scan.pattern import Pattern
+from sim.scan.returns import Returns, measure
+from sim.scan.surface import Surfaces
+
+Limits = tuple[float, float]
+
+
+def bias_of(sensor: spec.Sensor, rings: int, seed: np.random.SeedSequence) -> F32:
+    """The lasers' range biases (rings,) [m], one draw for the run."""
+    rng = np.random.default_rng(seed)
+    return (sensor.range_bias * rng.standard_normal(rings)).astype(np.float32)
+
+
+def sensing(
+    sensor: spec.Sensor, pattern: Pattern, blind: Bool, terrain: Mesh, limits: Limits, bias: F32
+) -> Callable[[Hits, Surfaces, Luck], Returns]:
+    """How this sensor turns what its rays met into returns.
+
+    Noise and losses first, in clear or thick air; then edges mix, flanks mirror, what is in the air
+    sends echoes of its own; last the bias of each laser. Truth knows nothing of any of it.
+
+    Args:
+        blind: (L, C) rays that the ego's own body takes. terrain: for mirrored rays.
+        limits: nearest and farthest measured range [m]. bias: (L,) [m].
+    """
+    noise, weather = sensor.noise, air(sensor.weather, limits[1])
+
+    def sense(hits: Hits, met: Surfaces, luck: Luck) -> Returns:
+        returns = measure(hits, met, noise, weather.alpha, limits, luck)
+        if noise.edges:
+            mix_edges(pattern, hits, met, returns, 1e-3 * noise.divergence_mrad, luck)
+        if noise.multipath:
+            add_multipath(pattern, hits, met, returns, terrain, limits[1], luck)
+        if not weather.clear:
+            add_weather(hits, met, blind.ravel(), returns, weather, limits, luck)
+        if bias.any():
+            image = returns.distance.reshape(len(bias), -1)
+            image += np.where(image > 0, bias[:, None], np.float32(0))
+        return returns
+
+    return sense
