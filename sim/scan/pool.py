@@ -26,9 +26,26 @@ def _pool(_process: int) -> ThreadPoolExecutor:
 def spread(work: Callable[[Item], Result], items: Iterable[Item]) -> list[Result]:
     """`work` of each item, in the order of the items, on the threads of this process.
 
-    The pool belongs to the process that made it: a forked child makes its own.
+    Whoever is free takes the next item, the caller too: a sweep has half a dozen of these, and
+    handing over every item by itself would cost more than the items. The pool belongs to the
+    process that made it: a forked child makes its own.
     """
-    return list(_pool(os.getpid()).map(work, items))
+    todo = list(items)
+    done: dict[int, Result] = {}
+    turn = itertools.count()
+
+    def take_turns() -> None:
+        while (i := next(turn)) < len(todo):
+            done[i] = work(todo[i])
+
+    helpers = [_pool(os.getpid()).submit(take_turns) for _ in range(min(workers(), len(todo)) - 1)]
+    try:
+        take_turns()
+    finally:
+        late = [helper for helper in helpers if not helper.cancel()]
+        for helper in late:
+            helper.result()
+    return [done[i] for i in range(len(todo))]
 
 
 def blocks(rays: int, count: int = 16) -> list[slice]:

@@ -18,15 +18,19 @@ CLOSE = 1e-9  # [m]
 
 
 @njit(cache=True, nogil=True)
-def _plane(height: F64, x0: float, y0: float, cell: float, x: float, y: float) -> tuple[float, float, float]:
-    """Height and slopes along x and y of the mesh at (x, y), clamped to it; NaN where x or y is."""
-    if np.isnan(x) or np.isnan(y):
-        return np.nan, np.nan, np.nan
-    ny, nx = height.shape
-    u = min(max((x - x0) / cell, 0.0), nx - 1.0)
-    v = min(max((y - y0) / cell, 0.0), ny - 1.0)
+def _place(
+    ny: int, nx: int, x0: float, y0: float, cell: float, x: float, y: float
+) -> tuple[int, int, float, float, bool]:
+    """Row j and column i of the cell at (x, y), clamped to the grid; where in it; whether it was clamped."""
+    p, q = (x - x0) / cell, (y - y0) / cell
+    u, v = min(max(p, 0.0), nx - 1.0), min(max(q, 0.0), ny - 1.0)
     i, j = min(int(u), nx - 2), min(int(v), ny - 2)
-    u, v = u - i, v - j
+    return j, i, u - i, v - j, u != p or v != q
+
+
+@njit(cache=True, nogil=True)
+def _plane(height: F64, j: int, i: int, u: float, v: float, cell: float) -> tuple[float, float, float]:
+    """Height and slopes along x and y of cell (j, i), at (u, v) of it."""
     z00, z11 = height[j, i], height[j + 1, i + 1]
     if u >= v:  # the triangle below the diagonal from (0, 0) to (1, 1)
         z10 = height[j, i + 1]
@@ -39,47 +43,69 @@ def _plane(height: F64, x0: float, y0: float, cell: float, x: float, y: float) -
 
 @njit(cache=True, nogil=True)
 def _look_up(height: F64, x0: float, y0: float, cell: float, xy: F64, out: F64) -> None:
-    """Height and slopes (n, 3) at xy (n, 2)."""
+    """Height and slopes (n, 3) at xy (n, 2); NaN where x or y is."""
+    ny, nx = height.shape
     for k in range(len(xy)):
-        out[k, 0], out[k, 1], out[k, 2] = _plane(height, x0, y0, cell, xy[k, 0], xy[k, 1])
+        if np.isnan(xy[k, 0]) or np.isnan(xy[k, 1]):
+            out[k, 0], out[k, 1], out[k, 2] = np.nan, np.nan, np.nan
+            continue
+        j, i, u, v, _ = _place(ny, nx, x0, y0, cell, xy[k, 0], xy[k, 1])
+        out[k, 0], out[k, 1], out[k, 2] = _plane(height, j, i, u, v, cell)
 
 
-@njit(cache=True, nogil=True)
-def _meet(height: F64, x0: float, y0: float, cell: float, x: float, y: float, z: float, d: F64) -> float:
+@njit(cache=True, nogil=True, inline="always")
+def _meet(
+    height: F64,
+    x0: float,
+    y0: float,
+    cell: float,
+    point: tuple[float, float, float],
+    d: tuple[float, float, float],
+) -> float:
     """Newton's method on z + t dz - H(x + t dx, y + t dy), exact in the triangle that holds the root.
 
-    After some steps it may only hop between triangles; halving the step then ends the hopping.
+    A step that stays in its triangle is the last. After some steps it may only hop between
+    triangles; halving the step then ends the hopping. NaN where it does not settle.
     """
-    t = 0.0
+    (ny, nx), (x, y, z), (dx, dy, dz), t = height.shape, point, d, 0.0
+    if np.isnan(x) or np.isnan(y):
+        return float(np.nan)
+    j, i, u, v, off = _place(ny, nx, x0, y0, cell, x, y)
     for step in range(STEPS):
-        ground, gx, gy = _plane(height, x0, y0, cell, x + t * d[0], y + t * d[1])
-        gap = z + t * d[2] - ground
-        rate = d[2] - gx * d[0] - gy * d[1]
+        ground, gx, gy = _plane(height, j, i, u, v, cell)
+        gap = z + t * dz - ground
+        rate = dz - gx * dx - gy * dy
         if abs(gap) < CLOSE:
             return t
         if rate == 0.0 or np.isnan(gap):
             break
-        t -= gap / rate if step < STEPS // 3 else 0.5 * gap / rate
+        whole = step < STEPS // 3
+        t -= gap / rate if whole else 0.5 * gap / rate
+        j0, i0, below, off0 = j, i, u >= v, off
+        j, i, u, v, off = _place(ny, nx, x0, y0, cell, x + t * dx, y + t * dy)
+        if whole and j == j0 and i == i0 and (u >= v) == below and not (off or off0):
+            return t
     return float(np.nan)
 
 
 @njit(cache=True, nogil=True)
 def _along(height: F64, x0: float, y0: float, cell: float, points: F64, d: F64, out: F64) -> None:
     """Distances along d from points (n, 3) [world] to the ground."""
+    along = d[0], d[1], d[2]
     for k in range(len(points)):
-        out[k] = _meet(height, x0, y0, cell, points[k, 0], points[k, 1], points[k, 2], d)
+        out[k] = _meet(height, x0, y0, cell, (points[k, 0], points[k, 1], points[k, 2]), along)
 
 
 @njit(cache=True, nogil=True)
 def _below(height: F64, x0: float, y0: float, cell: float, points: F64, T: F64, out: F32) -> None:
     """z of the ground along the z axis of a frame, below points (n, 3) of it; T takes it to the world."""
-    up, p = np.empty(3), np.empty(3)
-    for i in range(3):
-        up[i] = T[i, 2]
+    up = T[0, 2], T[1, 2], T[2, 2]
     for k in range(len(points)):
-        for i in range(3):
-            p[i] = T[i, 0] * points[k, 0] + T[i, 1] * points[k, 1] + T[i, 2] * points[k, 2] + T[i, 3]
-        out[k] = points[k, 2] + _meet(height, x0, y0, cell, p[0], p[1], p[2], up)
+        u, v, w = points[k, 0], points[k, 1], points[k, 2]
+        x = T[0, 0] * u + T[0, 1] * v + T[0, 2] * w + T[0, 3]
+        y = T[1, 0] * u + T[1, 1] * v + T[1, 2] * w + T[1, 3]
+        z = T[2, 0] * u + T[2, 1] * v + T[2, 2] * w + T[2, 3]
+        out[k] = w + _meet(height, x0, y0, cell, (x, y, z), up)
 
 
 @dataclass(frozen=True, eq=False)
