@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from datmo.errors import DatmoError
+from eval.commands.benchmark import benchmark
 from eval.commands.catalog import catalog
 from eval.commands.check import check
 from eval.commands.detect import detect
@@ -46,6 +47,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
 }
 for name, command in COMMANDS.items():
     app.command(name)(command)
+app.add_typer(benchmark, name="benchmark")
 
 
 def _say_version(wanted: bool) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from time import perf_counter
 
 import numpy as np
 
@@ -26,6 +27,7 @@ from sim.scene.motion import Poses
 from sim.scene.terrain import Terrain
 from sim.truth import ground_below, lost_rays, relief, truth_of
 
+STAGES = ("cast", "surfaces", "returns", "truth")
 LASERS = 2**31
 """Key of the stream from which the lasers' biases come; frames have theirs below."""
 
@@ -106,6 +108,7 @@ class Lidar:
         bias = bias_of(sensor, calibrated.rings, _child(seed, LASERS))
         self._sense = sensing(sensor, self.pattern, blind, self._ground, limits, bias)
         self._last: Returns | None = None
+        self.milliseconds: dict[str, float] = {}
 
     @staticmethod
     def shape(sensor: spec.Sensor, rate: float) -> tuple[int, int]:
@@ -123,12 +126,16 @@ class Lidar:
         Points are ring by ring from the top in firing order. With `deskew: ego` they are the
         places measured, in the sensor frame at the stamp; with `none` each is in the sensor frame
         at its own time. Ground truth heights are in the sensor frame at the stamp in both cases.
+        `milliseconds` then tells how long each stage took.
         """
-        stamp = index / self.rate
+        stamp, times = index / self.rate, [perf_counter()]
         hits = self.caster.cast(poses, self.T_ego_sensor)
+        times.append(perf_counter())
         bodies = [self._bodies(key) for key in poses.asset]
         met = surfaces(hits, self._terrain_kind, self._things, bodies, poses.kind)
+        times.append(perf_counter())
         returns = self._sense(hits, met, Luck(_child(self._seed, index)))
+        times.append(perf_counter())
         T_world_sensor = hits.motion.edge[-1].copy()
         got = gather(self.pattern, hits.motion.T_stamp_sensor, hits, met, returns, Kind.FALSE_RETURN)
         deskewed = self.sensor.deskew == "ego"
@@ -143,8 +150,11 @@ class Lidar:
         )
         height = ground_below(self._terrain, T_world_sensor, got.place)
         lost = lost_rays(hits, met, returns.hit, self.pattern.columns)
+        truth = truth_of(hits, lost, got, height, poses, bodies, stamp)
+        times.append(perf_counter())
+        self.milliseconds = dict(zip(STAGES, 1e3 * np.diff(times), strict=True))
         self._last = returns
-        return scan, truth_of(hits, lost, got, height, poses, bodies, stamp)
+        return scan, truth
 
     def range_image(self) -> tuple[F32, F32]:
         """Range [m] and intensity of the last sweep, (L, C) each, row 0 the top ring, 0 no return."""
