@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -19,7 +18,7 @@ from sim.scan.pattern import Pattern
 from sim.scan.pool import blocks, groups, spread
 from sim.scene.motion import Poses
 
-GROUP = 8
+GROUP = 4
 """Actors that one thread casts at in one go."""
 
 
@@ -46,10 +45,6 @@ class Hits:
     solo: I32
     visible: I32
     lost_to: I32
-
-
-def _call(job: Callable[[], Any]) -> Any:
-    return job()
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,22 +96,17 @@ class Caster:
         view = self.pattern.directions, motion.T_world_sensor, motion.T_stamp_sensor, motion.weight
         m, k = len(self._reach), len(poses)
         found = (
-            np.empty(m, np.float32),
-            np.empty(m, np.int32),
+            self._reach.copy(),
+            np.full(m, NOTHING, np.int32),
             np.empty(m, np.int32),
             np.empty((m, 3), np.float32),
             np.empty(m, np.float32),
         )
         bodies = [self._bodies(key) for key in poses.asset]
-        actors: list[Callable[[], Any]] = [
-            partial(self._at_actors, rows, motion, poses, bodies) for rows in groups(k, GROUP)
-        ]
-        static: list[Callable[[], Any]] = [
-            partial(self._at_static, rays, motion, view, found) for rays in blocks(m)
-        ]
-        attempts: list[Attempt] = spread(_call, actors + static)[: len(actors)]
+        attempts = spread(partial(self._at_actors, motion, poses, bodies), groups(k, GROUP))
         for a in attempts:
             contest(a.first, a.start, a.ray, (a.distance, a.triangle), found)
+        spread(partial(self._at_static, motion, view, found), blocks(m))
         lost_to = np.zeros((k, k + 2), np.int32)
         T_wa = np.ascontiguousarray(poses.T_world_actor)
 
@@ -129,17 +119,16 @@ class Caster:
         np.fill_diagonal(lost_to, 0)
         return Hits(*found, motion, solo, visible, lost_to)
 
-    def _at_static(self, rays: slice, motion: SweepMotion, view: View, found: Found) -> None:
-        """Cast a block of rays at what stands still."""
+    def _at_static(self, motion: SweepMotion, view: View, found: Found, rays: slice) -> None:
+        """Cast a block of rays at what stands still, as far as the nearest actor."""
         o, d = world_rays(self.pattern, motion, rays)
         distance, winner, triangle, normal = found[0][rays], found[1][rays], found[2][rays], found[3][rays]
-        distance[:], winner[:] = self._reach[rays], NOTHING
         for mesh, name in self._static:
             casts = mesh.cast(o, d, distance.copy())
             nearer(name, (casts.distance, casts.triangle, casts.normal), distance, winner, triangle, normal)
         describe(rays.start, rays.stop, view, found)
 
-    def _at_actors(self, rows: slice, motion: SweepMotion, poses: Poses, bodies: Sequence[Body]) -> Attempt:
+    def _at_actors(self, motion: SweepMotion, poses: Poses, bodies: Sequence[Body], rows: slice) -> Attempt:
         """Cast at a group of actors the rays that may meet them."""
         T_wa, some = poses.T_world_actor[rows], bodies[rows]
         may = candidates(self.pattern, self.blind, motion, T_wa, some, self._farthest)

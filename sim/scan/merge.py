@@ -65,6 +65,8 @@ def describe(start: int, stop: int, view: View, found: Found) -> None:
     distance, winner, triangle, normal, cosine = found
     d, T_ws, T_stamp, _ = view
     for r in range(start, stop):
+        if winner[r] >= 0:
+            continue
         if winner[r] == NOTHING:
             distance[r], triangle[r], cosine[r] = np.inf, -1, 0.0
             for i in range(3):
@@ -87,7 +89,7 @@ def contest(first: int, start: I32, ray: I32, hit: tuple[F32, I32], found: Found
     for a in range(len(start) - 1):
         for n in range(start[a], start[a + 1]):
             r = ray[n]
-            if at[n] >= 0 and far[n] < distance[r]:
+            if at[n] >= 0 and (far[n] < distance[r] or winner[r] == NOTHING):
                 distance[r], winner[r], triangle[r] = far[n], first + a, at[n]
 
 
