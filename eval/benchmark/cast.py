@@ -59,7 +59,7 @@ def benchmark_cast(
     The bare cast is `run(origins, directions)` of embreex: ready float32 rays, 8 blocks, two threads.
 
     Args:
-        actors: numbers of moving actors, evenly 5 to 75 m from the ego.
+        actors: numbers of moving actors, 5 to 75 m from the ego, evenly over the area.
         cells: of the terrain along each side; it has 2 cells² triangles over 200 x 200 m.
         rounds: sweeps of each number. on_round: told how many rounds are done.
 
@@ -101,7 +101,7 @@ def scene(lidar: Lidar, terrain: Terrain, actors: int) -> Poses:
     """One sweep: an ego at 8 m/s that turns, and actors around it, each with a speed of its own."""
     rng = np.random.default_rng(3)
     time = edges(lidar.pattern.columns, lidar.pattern.period)
-    radius = NEAREST + (FARTHEST - NEAREST) * (np.arange(actors) + 0.5) / max(actors, 1)
+    radius = NEAREST + (FARTHEST - NEAREST) * np.sqrt((np.arange(actors) + 0.5) / max(actors, 1))
     bearing = rng.uniform(-np.pi, np.pi, actors)
     yaw, speed = rng.uniform(-np.pi, np.pi, actors), rng.uniform(0, 15, actors)
     looks = [asset(FLEET[i % len(FLEET)]) for i in range(actors)]

@@ -9,10 +9,11 @@ from functools import partial
 import numpy as np
 
 from datmo.arrays import F32, F64, I32, Bool
+from datmo.geometry import inverse
 from sim.scan.bodies import Body, body
 from sim.scan.culling import candidates
 from sim.scan.embree import Mesh
-from sim.scan.merge import NOTHING, TERRAIN, THING, Found, View, account, contest, describe, nearer
+from sim.scan.merge import NOTHING, TERRAIN, THING, Found, account, contest, describe, nearer
 from sim.scan.motion import SweepMotion, sweep_motion, world_rays
 from sim.scan.pattern import Pattern
 from sim.scan.pool import blocks, groups, spread
@@ -51,8 +52,8 @@ class Hits:
 class Attempt:
     """What the rays that may meet some actors, from row `first` on, met of them.
 
-    Those of the i-th are rows start[i] .. start[i + 1] of ray, distance [m], triangle (-1 missed) and
-    normal [actor].
+    Those of the i-th are rows start[i] .. start[i + 1] of ray, distance [m], triangle (-1 missed),
+    normal and direction of the ray [actor].
     """
 
     first: int
@@ -61,6 +62,7 @@ class Attempt:
     distance: F32
     triangle: I32
     normal: F32
+    direction: F32
 
 
 class Caster:
@@ -93,7 +95,7 @@ class Caster:
     def cast(self, poses: Poses, T_ego_sensor: F64) -> Hits:
         """What every ray of one sweep meets, and how many rays each actor won and lost."""
         motion = sweep_motion(self.pattern, poses, T_ego_sensor)
-        view = self.pattern.directions, motion.T_world_sensor, motion.T_stamp_sensor, motion.weight
+        T_sensor_world = inverse(motion.edge[-1])
         m, k = len(self._reach), len(poses)
         found = (
             self._reach.copy(),
@@ -106,27 +108,27 @@ class Caster:
         attempts = spread(partial(self._at_actors, motion, poses, bodies), groups(k, GROUP))
         for a in attempts:
             contest(a.first, a.start, a.ray, (a.distance, a.triangle), found)
-        spread(partial(self._at_static, motion, view, found), blocks(m))
+        spread(partial(self._at_static, motion, T_sensor_world, found), blocks(m))
         lost_to = np.zeros((k, k + 2), np.int32)
-        T_wa = np.ascontiguousarray(poses.T_world_actor)
+        moving = np.ascontiguousarray(poses.T_world_actor), motion.weight, T_sensor_world
 
         def count(a: Attempt) -> None:
-            hit = a.distance, a.triangle, a.normal
-            account(a.first, a.start, a.ray, hit, T_wa, view, self._nearest, found, lost_to)
+            hit = a.distance, a.triangle, a.normal, a.direction
+            account(a.first, a.start, a.ray, hit, moving, self._nearest, found, lost_to)
 
         spread(count, attempts)
         solo, visible = lost_to.sum(1, dtype=np.int32), lost_to.diagonal().copy()
         np.fill_diagonal(lost_to, 0)
         return Hits(*found, motion, solo, visible, lost_to)
 
-    def _at_static(self, motion: SweepMotion, view: View, found: Found, rays: slice) -> None:
+    def _at_static(self, motion: SweepMotion, T_sensor_world: F64, found: Found, rays: slice) -> None:
         """Cast a block of rays at what stands still, as far as the nearest actor."""
         o, d = world_rays(self.pattern, motion, rays)
         distance, winner, triangle, normal = found[0][rays], found[1][rays], found[2][rays], found[3][rays]
         for mesh, name in self._static:
             casts = mesh.cast(o, d, distance.copy())
             nearer(name, (casts.distance, casts.triangle, casts.normal), distance, winner, triangle, normal)
-        describe(rays.start, rays.stop, view, found)
+        describe(rays.start, d, T_sensor_world, found)
 
     def _at_actors(self, motion: SweepMotion, poses: Poses, bodies: Sequence[Body], rows: slice) -> Attempt:
         """Cast at a group of actors the rays that may meet them."""
@@ -138,4 +140,4 @@ class Caster:
             mine = slice(may.start[i], may.start[i + 1])
             casts = one.mesh.cast(may.origins[mine], may.directions[mine], distance[mine])
             triangle[mine], normal[mine] = casts.triangle, casts.normal
-        return Attempt(rows.start, may.start, may.ray, distance, triangle, normal)
+        return Attempt(rows.start, may.start, may.ray, distance, triangle, normal, may.directions)

@@ -12,8 +12,6 @@ NOTHING, TERRAIN, THING = -1, -2, -3
 
 Found = tuple[F32, I32, I32, F32, F32]
 """Per ray: distance, winner, triangle, normal and cosine, as in `sim.scan.caster.Hits`."""
-View = tuple[F64, F64, F64, F64]
-"""Directions [sensor], T_world_sensor, T_stamp_sensor and weight of each column."""
 
 
 @njit(cache=True, nogil=True)
@@ -35,44 +33,43 @@ def nearer(
 
 @njit(cache=True, nogil=True)
 def _face(
-    r: int, d: F64, T_ws: F64, T_stamp: F64, x: float, y: float, z: float, normal: F32, cosine: F32
+    r: int, along: float, n: tuple[float, float, float], T_sensor_world: F64, normal: F32, cosine: F32
 ) -> None:
-    """Write the normal (x, y, z) [world] of what ray r met, and the cosine of its incidence.
+    """Write the normal of what ray r met: unit, facing the sensor; and the cosine of its incidence.
 
-    The normal becomes unit, faces the sensor and is in its frame at the stamp. (Whole arrays and
-    an index: a view of a row costs more than all the sums here.)
+    Args:
+        along: n times the ray's direction. n: as Embree gives it [world], of any length.
+        T_sensor_world: at the stamp.
     """
-    C = d.shape[1]
-    ring = r // C
-    c = r - ring * C
-    u = T_ws[c, 0, 0] * x + T_ws[c, 1, 0] * y + T_ws[c, 2, 0] * z
-    v = T_ws[c, 0, 1] * x + T_ws[c, 1, 1] * y + T_ws[c, 2, 1] * z
-    w = T_ws[c, 0, 2] * x + T_ws[c, 1, 2] * y + T_ws[c, 2, 2] * z
-    size = np.sqrt(u * u + v * v + w * w)
-    along = (u * d[ring, c, 0] + v * d[ring, c, 1] + w * d[ring, c, 2]) / size
-    cosine[r] = min(abs(along), 1.0)
+    x, y, z = n
+    size = np.sqrt(x * x + y * y + z * z)
+    cosine[r] = min(abs(along) / size, 1.0)
     s = -1.0 / size if along > 0 else 1.0 / size
     for i in range(3):
-        normal[r, i] = s * (T_stamp[c, i, 0] * u + T_stamp[c, i, 1] * v + T_stamp[c, i, 2] * w)
+        normal[r, i] = s * (T_sensor_world[i, 0] * x + T_sensor_world[i, 1] * y + T_sensor_world[i, 2] * z)
 
 
 @njit(cache=True, nogil=True)
-def describe(start: int, stop: int, view: View, found: Found) -> None:
-    """Describe what stands still and was met by rays start..stop: normals [world] become those of `Hits`.
+def describe(start: int, directions: F32, T_sensor_world: F64, found: Found) -> None:
+    """Describe what stands still and was met by the rays from `start` on.
 
-    Rays that met nothing get an infinite distance, and no normal.
+    Their normals [world] become those of `Hits`; rays that met nothing get an infinite distance.
+
+    Args:
+        directions: (n, 3) [world]. T_sensor_world: at the stamp.
     """
     distance, winner, triangle, normal, cosine = found
-    d, T_ws, T_stamp, _ = view
-    for r in range(start, stop):
+    for i in range(len(directions)):
+        r = start + i
         if winner[r] >= 0:
             continue
         if winner[r] == NOTHING:
             distance[r], triangle[r], cosine[r] = np.inf, -1, 0.0
-            for i in range(3):
-                normal[r, i] = 0.0
+            normal[r, 0], normal[r, 1], normal[r, 2] = 0.0, 0.0, 0.0
             continue
-        _face(r, d, T_ws, T_stamp, normal[r, 0], normal[r, 1], normal[r, 2], normal, cosine)
+        n = float(normal[r, 0]), float(normal[r, 1]), float(normal[r, 2])
+        along = directions[i, 0] * n[0] + directions[i, 1] * n[1] + directions[i, 2] * n[2]
+        _face(r, along, n, T_sensor_world, normal, cosine)
 
 
 @njit(cache=True, nogil=True)
@@ -98,9 +95,8 @@ def account(
     first: int,
     start: I32,
     ray: I32,
-    hit: tuple[F32, I32, F32],
-    T_wa: F64,
-    view: View,
+    hit: tuple[F32, I32, F32, F32],
+    moving: tuple[F64, F64, F64],
     min_range: float,
     found: Found,
     lost_to: I32,
@@ -110,12 +106,14 @@ def account(
     A hit nearer than `min_range` could not have been measured and is not counted.
 
     Args:
-        hit: distance, triangle (-1 none) and normal [actor]. T_wa: (k, B + 1, 4, 4) of all actors.
+        hit: distance, triangle (-1 none), normal and the ray's direction [actor].
+        moving: T_world_actor (k, B + 1, 4, 4) of all actors, the weight of each column (C,), and
+            T_sensor_world at the stamp.
         lost_to: (k, k + 2) counts; what an actor won itself stands on the diagonal.
     """
     winner, normal, cosine = found[1], found[3], found[4]
-    (d, T_ws, T_stamp, weight), (distance, triangle, faces) = view, hit
-    C, k, n = d.shape[1], len(T_wa), np.empty(3)
+    (distance, triangle, faces, d), (T_wa, weight, T_sensor_world) = hit, moving
+    C, k, n = len(weight), len(T_wa), np.empty(3)
     for row in range(first, first + len(start) - 1):
         for m in range(start[row - first], start[row - first + 1]):
             if triangle[m] < 0:
@@ -132,4 +130,5 @@ def account(
                 for j in range(3):
                     e = T_wa[row, b, i, j] + w * (T_wa[row, b + 1, i, j] - T_wa[row, b, i, j])
                     n[i] += e * faces[m, j]
-            _face(r, d, T_ws, T_stamp, n[0], n[1], n[2], normal, cosine)
+            along = d[m, 0] * faces[m, 0] + d[m, 1] * faces[m, 1] + d[m, 2] * faces[m, 2]
+            _face(r, along, (n[0], n[1], n[2]), T_sensor_world, normal, cosine)
