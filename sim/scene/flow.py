@@ -63,7 +63,8 @@ class Traffic:
             self.drivers = kept
             self._highway.road.vehicles = [self.ego, *kept]
         waiting = sum(self._population.waiting(r) for r in distance)
-        self._add(self._population.refill(centre, waiting, self._clear()))
+        inside = len(distance) - waiting
+        self._add(self._population.refill(centre, inside, waiting, self._clear()))
 
     def step(self, dt: float) -> None:
         """Play `dt` seconds."""
@@ -92,7 +93,7 @@ class Traffic:
     def reachable(self, duration: float) -> F64:
         """Points (n, 2) that the ego may come to within `duration` [m, world]."""
         ego, start = self.scenario.ego, self._highway.start
-        reach = ego.speed * duration + 10.0
+        reach = self._highway.top_speed(self.ego, ego.speed) * duration + 10.0
         if isinstance(self.ego, Driver):
             points = self.ego.course.points
             first = int(np.argmin(np.hypot(*(points - start).T)))

@@ -20,6 +20,8 @@ STOCK = 60.0  # width of the ring out there in which the next ones wait [m]
 SPARE = 4  # more than asked for, at the start: some leave before others come
 AHEAD = 50.0  # the vehicles of the start are within range of the ego's start and of this far on [m]
 PACE = 0.8  # of the lane's limit
+DENSER, SLOW = (1.0, 0.7, 0.5), 8.0
+"""Where a vehicle does not fit it comes slower, as in dense traffic, but not below SLOW [m/s]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,19 +85,22 @@ class Population:
         found = self._fill(here & ~there & self._places.towards(start), most // 6)  # behind the ego
         found += self._fill(here & there, most // 2)
         found += self._fill(there & self._places.towards(later), most - len(found))
-        return [*found, *self.refill(start, 0, clear)]
+        return [*found, *self.refill(start, len(found), 0, clear)]
 
     def gone(self, distance: float) -> bool:
         """Whether a vehicle at this distance from the ego [m] is out of the world."""
         return distance > self._reach + OUTSIDE + STOCK
 
-    def refill(self, centre: F64, waiting: int, clear: Bool) -> list[Arrival]:
+    def refill(self, centre: F64, inside: int, waiting: int, clear: Bool) -> list[Arrival]:
         """Vehicles that come next, in a ring beyond the range around the ego.
 
+        Half as many as are wanted wait there, or as many as are missing within range if that is more.
+
         Args:
-            centre: (2,) of the ego [m, world]. waiting: vehicles that are out there already.
+            centre: (2,) of the ego [m, world]. inside: vehicles within range.
+            waiting: vehicles that are out there already.
         """
-        missing = (self._count + 1) // 2 - waiting
+        missing = max((self._count + 1) // 2, self._count - inside) - waiting
         if missing <= 0:
             return []
         low = self._reach + OUTSIDE
@@ -127,12 +132,16 @@ class Population:
         speed = float(np.clip(PACE * limit + self._rng.normal(), 0.5 * limit, limit))
         looks = body(FLEET[int(self._rng.integers(len(FLEET)))])
         course = Course(follow(self._lanes, [key], arc + ONWARD, self._rng), self._names)
-        made = Arrival(FIRST_ID + self._made, course, arc, speed, looks)
+        name = FIRST_ID + self._made
         self._made += 1  # an id is never given twice
-        mover = asking(made.id, looks, course, arc - looks.length / 2, speed, 0.0, 0.0, False)
-        need = looks.length + braking(speed, FIRM) + GAP
-        claim = stretch(mover, 0.0, need)
-        if (mover.zone and mover.zone[0] < need) or not self._way.free(claim):
-            return []
-        self._way.place(made.id, claim)
-        return [made]
+        for slower in DENSER:
+            if slower < 1 and slower * speed < SLOW:
+                break
+            made = Arrival(name, course, arc, slower * speed, looks)
+            mover = asking(name, looks, course, arc - looks.length / 2, made.speed, 0.0, 0.0, False)
+            need = looks.length + braking(made.speed, FIRM) + GAP
+            claim = stretch(mover, 0.0, need)
+            if not (mover.zone and mover.zone[0] < need) and self._way.free(claim):
+                self._way.place(name, claim)
+                return [made]
+        return []

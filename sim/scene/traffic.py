@@ -18,6 +18,7 @@ from gymnasium.spaces import Discrete, Space
 
 from datmo.arrays import F64
 from datmo.errors import ScenarioError, nearest
+from datmo.geometry import wrap_angle
 from scenarios.spec import Scenario
 from sim.scene.autopilot import STEP, Mover
 from sim.scene.course import Course, Key, Lane, crossings, follow
@@ -31,7 +32,7 @@ with warnings.catch_warnings():
     from highway_env.road.road import Road as HighwayRoad
     from highway_env.road.road import RoadNetwork
     from highway_env.vehicle.behavior import IDMVehicle
-    from highway_env.vehicle.controller import ControlledVehicle
+    from highway_env.vehicle.controller import ControlledVehicle, MDPVehicle
     from highway_env.vehicle.dynamics import BicycleVehicle
     from highway_env.vehicle.kinematics import Vehicle
 
@@ -39,7 +40,8 @@ EXTEND = 200.0
 """Roads that end are made longer by this much [m]."""
 
 EGO_ID = 0
-JOINT = 3.0  # lanes whose ends are farther apart are not joined [m]
+AHEAD, ASIDE, BENT = 6.0, 2.5, np.pi / 3
+"""A lane goes on in another that begins within so much of its end, along and across, and turns so much."""
 FAR = 2000.0  # courses are at least this long where the road allows [m]
 _IDM = {"DISTANCE_WANTED": 10.0, "COMFORT_ACC_MAX": 3.0, "COMFORT_ACC_MIN": -5.0}
 """Of highway-env's IDM; its intersection leaves them changed for every environment of the process."""
@@ -154,16 +156,21 @@ def straight_network() -> RoadNetwork:
     return network
 
 
+def goes_on(lane: Any, onward: Any) -> bool:
+    """Whether a vehicle at the end of one lane is about at the beginning of the other, and heads along it."""
+    along, aside = onward.local_coordinates(lane.position(lane.length, 0))
+    turn = wrap_angle(onward.heading_at(0) - lane.heading_at(lane.length))
+    return bool(abs(along) < AHEAD and abs(aside) < ASIDE and abs(turn) < BENT)
+
+
 def extend(network: RoadNetwork) -> dict[Key, Lane]:
     """Lengthen the straight lanes at which roads end, in place, and list all lanes in the world."""
     lanes = network.lanes_dict()
-    ends = np.array([lane.position(lane.length, 0) for lane in lanes.values()])
-    starts = np.array([lane.position(0, 0) for lane in lanes.values()])
+    joints = [(a, b) for a in lanes for b in lanes if a != b and goes_on(lanes[a], lanes[b])]
+    led_to, leading = {b for _, b in joints}, {a for a, _ in joints}
     listed: dict[Key, tuple[bool, bool]] = {}
     for key, lane in lanes.items():
-        entry = bool(np.hypot(*(ends - lane.position(0, 0)).T).min() > JOINT)
-        leaving = bool(np.hypot(*(starts - lane.position(lane.length, 0)).T).min() > JOINT)
-        listed[key] = entry, leaving
+        listed[key] = entry, leaving = key not in led_to, key not in leading
         if type(lane) is StraightLane and (entry or leaving):
             a = lane.position(-EXTEND if entry else 0.0, 0)
             b = lane.position(lane.length + (EXTEND if leaving else 0.0), 0)
@@ -239,6 +246,12 @@ class Highway:
         with quiet():
             self.env.define_spaces()
         return made
+
+    def top_speed(self, ego: Any, cruise: float) -> float:
+        """The most that the ego may drive [m/s]: the autopilot its cruise, an agent what it can."""
+        if isinstance(ego, MDPVehicle):
+            return max(cruise, float(max(ego.target_speeds)))
+        return cruise if isinstance(ego, Driver) else max(cruise, float(ego.MAX_SPEED))
 
     def drive(self, arrival: Arrival) -> Driver:
         """A driver on this map."""
