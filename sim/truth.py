@@ -5,16 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numba import njit
 
-from datmo.arrays import F32, F64, Bool
+from datmo.arrays import F64, I32
 from datmo.geometry import transform
-from datmo.messages import Boxes, LostRays, Relief, Truth, visibility
+from datmo.messages import Boxes, Relief, Truth, visibility
 from sim.scan.bodies import Body
 from sim.scan.caster import Hits
 from sim.scan.embree import Mesh
 from sim.scan.gather import Gathered
-from sim.scan.pool import blocks, spread
-from sim.scan.surface import Surfaces
 from sim.scene.motion import Poses
 from sim.scene.terrain import Terrain
 
@@ -32,49 +31,28 @@ def true_boxes(poses: Poses, bodies: Sequence[Body]) -> Boxes:
     return Boxes(center=center, size=size, yaw=yaw, velocity=poses.velocity, id=poses.id, kind=poses.kind)
 
 
-def ground_below(terrain: Terrain, T_world_sensor: F64, points: F64) -> F32:
+def ground_below(terrain: Terrain, T_world_sensor: F64, points: F64) -> F64:
     """z [m, sensor] (n,) at which the line through each point along the sensor's z axis meets the ground.
 
     Args:
         points: (n, 3) [m, sensor at the stamp].
     """
-    out = np.empty(len(points), np.float32)
-    spread(lambda s: terrain.below(points[s], T_world_sensor, out[s]), blocks(len(points)))
-    return out
+    up = np.ascontiguousarray(T_world_sensor[:3, 2])
+    return np.asarray(points[:, 2] + terrain.along(transform(T_world_sensor, points), up))
 
 
-def lost_rays(hits: Hits, surfaces: Surfaces, hit: Bool, columns: int) -> LostRays:
-    """The rays without a return: sky, lost, dropped, too near, and those on the ego's own body.
-
-    The last count as having met nothing.
-    """
-    rays = np.flatnonzero(~hit)
-    distance = hits.distance[rays]
-    return LostRays(
-        ring=(rays // columns).astype(np.uint8),
-        column=(rays % columns).astype(np.int32),
-        actor=np.maximum(hits.winner[rays], -1),
-        thing=surfaces.thing[rays],
-        kind=surfaces.kind[rays],
-        range=np.where(np.isfinite(distance), distance, np.float32(np.nan)),
-    )
+@njit(cache=True, nogil=True)
+def _count(actor: I32, counts: I32) -> None:
+    """How many returns each actor gave."""
+    for n in range(len(actor)):
+        if actor[n] >= 0:
+            counts[actor[n]] += 1
 
 
-def truth_of(
-    hits: Hits,
-    lost: LostRays,
-    gathered: Gathered,
-    height: F32,
-    poses: Poses,
-    bodies: Sequence[Body],
-    stamp: float,
-) -> Truth:
-    """Truth of one sweep's returns.
-
-    Args:
-        height: (n,) true ground at each measured point [m, sensor].
-    """
-    counts = np.bincount(gathered.actor + 1, minlength=len(poses) + 1)[1:]
+def truth_of(hits: Hits, gathered: Gathered, poses: Poses, bodies: Sequence[Body], stamp: float) -> Truth:
+    """Truth of one sweep's returns."""
+    counts = np.zeros(len(poses), np.int32)
+    _count(gathered.actor, counts)
     return Truth(
         boxes=true_boxes(poses, bodies),
         stamp=stamp,
@@ -83,14 +61,14 @@ def truth_of(
         thing=gathered.thing,
         kind=gathered.kind,
         is_ground=gathered.is_ground,
-        height=height,
+        height=gathered.height,
         normal=gathered.normal,
         solo=hits.solo,
         visible=hits.visible,
-        returns=counts.astype(np.int32),
+        returns=counts,
         lost_to=hits.lost_to,
         visibility=visibility(hits.solo, hits.visible),
-        lost=lost,
+        lost=gathered.lost,
         cause=gathered.cause,
     )
 
@@ -106,7 +84,7 @@ def relief(terrain: Terrain, mesh: Mesh, T_world_sensor: F64, eye: F64, xy: F64)
         mesh: of the terrain. eye: (3,) optical centre [m, sensor]. xy: (g, 2) [m, sensor].
     """
     xy = np.asarray(xy, float)
-    height = ground_below(terrain, T_world_sensor, np.column_stack([xy, np.zeros(len(xy))])).astype(float)
+    height = ground_below(terrain, T_world_sensor, np.column_stack([xy, np.zeros(len(xy))]))
     world = transform(T_world_sensor, np.column_stack([xy, np.nan_to_num(height)]))
     ray = world - transform(T_world_sensor, eye[None])
     distance = np.linalg.norm(ray, axis=1)

@@ -11,17 +11,22 @@ class Noise(Model):
     """What the ideal sensor does not have; every effect can be switched off (see `IDEAL`)."""
 
     range_std: float = Field(
-        0.008, ge=0, le=1, description="standard deviation of range where light is plenty [m]; 0 for none"
+        0.0075, ge=0, le=1, description="standard deviation of range where light is plenty [m]; 0 for none"
     )
     drop_out: float = Field(0.01, ge=0, le=1, description="isolated drop-outs, share of returns")
     grazing: bool = Field(True, description="lose returns by range, incidence and material")
     intensity: bool = Field(True, description="intensity scatters about its material's, and is 0 where faint")
+    response: float = Field(
+        0.25, ge=0, le=0.5, description="standard deviation of the lasers' response in intensity, share"
+    )
     edges: bool = Field(True, description="a beam that straddles an edge meets both surfaces")
     divergence_mrad: float = Field(2.0, gt=0, le=10, description="full angle of the beam, for edges [mrad]")
     multipath: bool = Field(True, description="shiny surfaces send the beam on: returns below the ground")
 
 
-IDEAL = Noise(range_std=0, drop_out=0, grazing=False, intensity=False, edges=False, multipath=False)
+IDEAL = Noise(
+    range_std=0, drop_out=0, grazing=False, intensity=False, response=0, edges=False, multipath=False
+)
 """Every effect off: range and intensity are those of the surface that was met."""
 
 

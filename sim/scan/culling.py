@@ -147,13 +147,12 @@ def _gather(
     """Fill `out` (ray, origin, direction [actor]; first row of each actor) with the rays that meet boxes."""
     (o, d), (azimuth, elevation, rotor), (T_ws, weight), (low, high) = rays, angles, sensor, box
     (where, window), (chosen, origin, direction, start), C, n = seen, out, len(rotor), 0
-    T, made, ray = np.empty((BLOCK, 3, 4)), np.empty(BLOCK, np.bool_), np.empty(6)
-    start[:] = 0
+    T, ray, start[:] = np.empty((BLOCK, 3, 4)), np.empty(6), 0
     for s in range(len(where)):
         a, b = where[s, 0], where[s, 1]
         first, last = b * BLOCK, min((b + 1) * BLOCK, C)
         middle, half = (rotor[first] + rotor[last - 1]) / 2, (rotor[first] - rotor[last - 1]) / 2
-        made[:] = False
+        made = np.zeros(BLOCK, np.bool_)
         for ring in range(len(elevation)):
             off = _turn(middle + azimuth[ring] - window[s, 0])
             far = abs(elevation[ring] - window[s, 2]) > window[s, 3] + SLACK

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from datmo.arrays import F32
+from datmo.arrays import F32, I64
 from sim.scan.pool import blocks, spread
 
 GAMMA = np.uint64(0x9E3779B97F4A7C15)
@@ -54,6 +54,13 @@ def _uniforms(key: np.uint64, start: int, out: F32) -> None:
 
 
 @njit(cache=True, nogil=True)
+def _uniforms_at(key: np.uint64, counters: I64, out: F32) -> None:
+    """As `_uniforms`, for some counters."""
+    for i in range(len(out)):
+        out[i] = np.float32(_word(key, counters[i]) >> np.uint64(40)) * UNIT
+
+
+@njit(cache=True, nogil=True)
 def _normals(key: np.uint64, start: int, out: F32) -> None:
     """Standard normal numbers, by the quantile at the middle of one of 2^32 equal steps."""
     for i in range(len(out)):
@@ -77,13 +84,22 @@ class Luck:
         """(m,) in [0, 1)."""
         return self._draw(_uniforms, stream, m)
 
+    def uniform_at(self, stream: int, rays: I64) -> F32:
+        """What `uniform` gives to some rays (n,)."""
+        out = np.empty(len(rays), np.float32)
+        _uniforms_at(self._key(stream), rays, out)
+        return out
+
     def normal(self, stream: int, m: int) -> F32:
         """(m,) of mean 0 and variance 1."""
         return self._draw(_normals, stream, m)
 
-    def _draw(self, kernel: object, stream: int, m: int) -> F32:
+    def _key(self, stream: int) -> np.uint64:
         child = np.random.SeedSequence(self._seed.entropy, spawn_key=(*self._seed.spawn_key, stream))
-        key = child.generate_state(1, np.uint64)[0]
+        return np.uint64(child.generate_state(1, np.uint64)[0])
+
+    def _draw(self, kernel: object, stream: int, m: int) -> F32:
+        key = self._key(stream)
         out = np.empty(m, np.float32)
         spread(lambda rows: kernel(key, rows.start, out[rows]), blocks(m, 8))  # type: ignore[operator]
         return out

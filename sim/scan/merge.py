@@ -118,8 +118,7 @@ def account(
         for m in range(start[row - first], start[row - first + 1]):
             if triangle[m] < 0:
                 continue
-            r = ray[m]
-            by = winner[r]
+            r, by = ray[m], winner[ray[m]]
             if distance[m] >= min_range:
                 lost_to[row, k if by == THING else k + 1 if by == TERRAIN else by] += 1
             if by != row:

@@ -9,11 +9,11 @@ import numpy as np
 
 from datmo.arrays import F32, F64
 from datmo.errors import ScenarioError, SimulationError
-from datmo.messages import Kind, Relief, Scan, Truth
+from datmo.messages import Relief, Scan, Truth
 from scenarios import spec
 from sim.scan.bodies import Body, body
 from sim.scan.caster import Caster
-from sim.scan.effects.chain import bias_of, sensing
+from sim.scan.effects.chain import sensing
 from sim.scan.embree import Mesh
 from sim.scan.gather import gather
 from sim.scan.luck import Luck
@@ -25,11 +25,11 @@ from sim.scan.things import place
 from sim.scan.units import Unit, unit
 from sim.scene.motion import Poses
 from sim.scene.terrain import Terrain
-from sim.truth import ground_below, lost_rays, relief, truth_of
+from sim.truth import relief, truth_of
 
 STAGES = ("cast", "surfaces", "returns", "truth")
 LASERS = 2**31
-"""Key of the stream from which the lasers' biases come; frames have theirs below."""
+"""Key of the stream from which the lasers' biases and gains come; frames have theirs below."""
 
 
 def mount(sensor: spec.Sensor) -> F64:
@@ -105,8 +105,7 @@ class Lidar:
         blind = own_body(self.pattern, sensor.body_mask)
         limits = calibrated.nearest, sensor.range
         self.caster = Caster(self.pattern, self._ground, static, limits, blind, bodies)
-        bias = bias_of(sensor, calibrated.rings, _child(seed, LASERS))
-        self._sense = sensing(sensor, self.pattern, blind, self._ground, limits, bias)
+        self._sense = sensing(sensor, self.pattern, blind, self._ground, limits, _child(seed, LASERS))
         self._last: Returns | None = None
         self.milliseconds: dict[str, float] = {}
 
@@ -136,21 +135,18 @@ class Lidar:
         times.append(perf_counter())
         returns = self._sense(hits, met, Luck(_child(self._seed, index)))
         times.append(perf_counter())
-        T_world_sensor = hits.motion.edge[-1].copy()
-        got = gather(self.pattern, hits.motion.T_stamp_sensor, hits, met, returns, Kind.FALSE_RETURN)
         deskewed = self.sensor.deskew == "ego"
+        got = gather(self.pattern, hits, met, returns, self._terrain, deskewed)
         scan = Scan(
-            points=got.place.astype(np.float32) if deskewed else got.own,
+            points=got.points,
             stamp=stamp,
-            T_world_sensor=T_world_sensor,
+            T_world_sensor=hits.motion.edge[-1].copy(),
             deskewed=deskewed,
             intensity=got.intensity,
             ring=got.ring,
             dt=got.dt,
         )
-        height = ground_below(self._terrain, T_world_sensor, got.place)
-        lost = lost_rays(hits, met, returns.hit, self.pattern.columns)
-        truth = truth_of(hits, lost, got, height, poses, bodies, stamp)
+        truth = truth_of(hits, got, poses, bodies, stamp)
         times.append(perf_counter())
         self.milliseconds = dict(zip(STAGES, 1e3 * np.diff(times), strict=True))
         self._last = returns

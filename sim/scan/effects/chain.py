@@ -16,20 +16,26 @@ from sim.scan.effects.weather import add_weather
 from sim.scan.embree import Mesh
 from sim.scan.luck import Luck
 from sim.scan.pattern import Pattern
-from sim.scan.returns import Returns, measure
+from sim.scan.returns import Returns, measure, response_of
 from sim.scan.surface import Surfaces
 
 Limits = tuple[float, float]
 
 
-def bias_of(sensor: spec.Sensor, rings: int, seed: np.random.SeedSequence) -> F32:
-    """The lasers' range biases (rings,) [m], one draw for the run."""
-    rng = np.random.default_rng(seed)
-    return (sensor.range_bias * rng.standard_normal(rings)).astype(np.float32)
+def lasers(sensor: spec.Sensor, rings: int, seed: np.random.SeedSequence) -> tuple[F32, F32]:
+    """The lasers' range biases [m] and gains of intensity, (rings,) each, one draw for the run."""
+    one, other = (np.random.default_rng([*seed.generate_state(4), key]) for key in (0, 1))
+    bias = (sensor.range_bias * one.standard_normal(rings)).astype(np.float32)
+    return bias, response_of(sensor.noise.response, rings, other)
 
 
 def sensing(
-    sensor: spec.Sensor, pattern: Pattern, blind: Bool, terrain: Mesh, limits: Limits, bias: F32
+    sensor: spec.Sensor,
+    pattern: Pattern,
+    blind: Bool,
+    terrain: Mesh,
+    limits: Limits,
+    seed: np.random.SeedSequence,
 ) -> Callable[[Hits, Surfaces, Luck], Returns]:
     """How this sensor turns what its rays met into returns.
 
@@ -38,14 +44,15 @@ def sensing(
 
     Args:
         blind: (L, C) rays that the ego's own body takes. terrain: for mirrored rays.
-        limits: nearest and farthest measured range [m]. bias: (L,) [m].
+        limits: nearest and farthest measured range [m]. seed: of what differs from laser to laser.
     """
+    bias, gain = lasers(sensor, len(pattern.elevation), seed)
     noise, weather = sensor.noise, air(sensor.weather, limits[1])
 
     def sense(hits: Hits, met: Surfaces, luck: Luck) -> Returns:
-        returns = measure(hits, met, noise, weather.alpha, limits, luck)
+        returns = measure(hits, met, noise, weather.alpha, limits, gain, luck)
         if noise.edges:
-            mix_edges(pattern, hits, met, returns, 1e-3 * noise.divergence_mrad, luck)
+            mix_edges(pattern, hits, met, returns, 1e-3 * noise.divergence_mrad, limits[0], luck)
         if noise.multipath:
             add_multipath(pattern, hits, met, returns, terrain, limits[1], luck)
         if not weather.clear:

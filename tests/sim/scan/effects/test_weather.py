@@ -24,6 +24,8 @@ from sim.scan.returns import FAINTEST, Returns, measure
 
 LIMITS = (0.9, 80.0)
 M = 40_000
+EVEN = np.ones(64, np.float32)
+"""Lasers that answer alike."""
 
 
 def rays(distance: float, rho: float = 0.3, m: int = M) -> tuple[SimpleNamespace, SimpleNamespace]:
@@ -38,7 +40,7 @@ def rays(distance: float, rho: float = 0.3, m: int = M) -> tuple[SimpleNamespace
 def sweep(distance: float, weather: Weather, rho: float = 0.3, noise: Noise = IDEAL) -> Returns:
     hits, met = rays(distance, rho)
     here, luck = air(weather, LIMITS[1]), Luck(np.random.SeedSequence(4))
-    returns = measure(hits, met, noise, here.alpha, LIMITS, luck)
+    returns = measure(hits, met, noise, here.alpha, LIMITS, EVEN, luck)
     if not here.clear:
         add_weather(hits, met, np.zeros(M, bool), returns, here, LIMITS, luck)
     return returns
@@ -115,7 +117,7 @@ def test_thick_air_loses_what_the_link_budget_says() -> None:
     power = rho / R**2 * np.exp(-2 * extinction(weather) * R)
     kept = 1 / (1 + (FAINTEST / power) ** 3)
     hits, met = rays(R, rho)
-    alone = measure(hits, met, IDEAL.model_copy(update={"grazing": True}), extinction(weather), LIMITS,
+    alone = measure(hits, met, IDEAL.model_copy(update={"grazing": True}), extinction(weather), LIMITS, EVEN,
                     Luck(np.random.SeedSequence(4)))  # fmt: skip
     assert 0.1 < kept < 0.95
     assert alone.hit.mean() == pytest.approx(kept, abs=0.01)
@@ -125,7 +127,7 @@ def test_thick_air_loses_what_the_link_budget_says() -> None:
 def test_nothing_is_seen_through_the_own_body() -> None:
     hits, met = rays(np.inf)
     luck, here = Luck(np.random.SeedSequence(4)), air(Weather(snow_mm_h=5), LIMITS[1])
-    returns = measure(hits, met, IDEAL, here.alpha, LIMITS, luck)
+    returns = measure(hits, met, IDEAL, here.alpha, LIMITS, EVEN, luck)
     add_weather(hits, met, np.ones(M, bool), returns, here, LIMITS, luck)
     assert not returns.hit.any()
 
