@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from datmo.messages import FalseReturn
-from sim.scan.effects.edges import BEND, EDGE, JUMP, OFF, PULSE, SHARE, SIDES, mix_edges, shifts
+from sim.scan.effects.edges import EDGE, OFF, PULSE, SHARE, SIDES, mix_edges
+from sim.scan.effects.jumps import BEND, JUMP, shifts
 from sim.scan.luck import Luck
 from sim.scan.pattern import Pattern, pattern
 from sim.scan.units import unit
@@ -26,6 +27,7 @@ def seen(pattern: Pattern, distance: np.ndarray, rho: float | np.ndarray = 0.3) 
     met = SimpleNamespace(reflectivity=np.broadcast_to(np.float32(rho), m).copy())
     returns = SimpleNamespace(
         distance=np.where(np.isfinite(flat), flat, 0).astype(np.float32),
+        hit=np.isfinite(flat),
         false=np.zeros(m, np.uint8),
         source=np.arange(m, dtype=np.int32),
     )
@@ -189,6 +191,6 @@ def test_a_plane_has_next_to_no_edge_however_it_is_tilted() -> None:
 
 def test_lost_rays_stay_lost() -> None:
     hits, met, returns = posts(0.6)
-    returns.distance[::3] = 0
+    returns.distance[::3], returns.hit[::3] = 0, False
     mix_edges(GRID, hits, met, returns, 1.5e-3, NEAREST, Luck(SEED))
     assert (returns.distance[::3] == 0).all()
