@@ -10,9 +10,10 @@ from scenarios.spec.base import Model
 from scenarios.spec.pedestrians import Pedestrian
 from scenarios.spec.returns import IDEAL, Noise, Weather
 from scenarios.spec.scenario import Bound, Scenario
+from scenarios.spec.scenery import Parking, Row, Scenery, Strewn
 from scenarios.spec.sensor import Sensor
 from scenarios.spec.terrain import Terrain, TerrainFile
-from scenarios.spec.things import Thing
+from scenarios.spec.things import Thing, ThingKind
 from scenarios.spec.traffic import Ego, Traffic
 
 __all__ = [
@@ -22,12 +23,17 @@ __all__ = [
     "Ego",
     "Model",
     "Noise",
+    "Parking",
     "Pedestrian",
+    "Row",
     "Scenario",
+    "Scenery",
     "Sensor",
+    "Strewn",
     "Terrain",
     "TerrainFile",
     "Thing",
+    "ThingKind",
     "Traffic",
     "WayPoint",
     "Weather",

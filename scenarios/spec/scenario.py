@@ -9,6 +9,7 @@ from scenarios.expect import UNITS
 from scenarios.spec.actors import Actor
 from scenarios.spec.base import Model
 from scenarios.spec.pedestrians import Pedestrian
+from scenarios.spec.scenery import Scenery
 from scenarios.spec.sensor import Sensor
 from scenarios.spec.terrain import Terrain
 from scenarios.spec.things import Thing
@@ -44,6 +45,7 @@ class Scenario(Model):
     pedestrians: tuple[Pedestrian, ...] = ()
     actors: tuple[Actor, ...] = ()
     things: tuple[Thing, ...] = ()
+    scenery: Scenery = Scenery()
     sensor: Sensor = Sensor()
     ego: Ego = Ego()
     expect: dict[str, Bound] = Field(default_factory=dict)

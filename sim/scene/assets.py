@@ -1,4 +1,4 @@
-"""The catalogue of meshes: what actors and things look like to the sensor.
+"""The catalogue of meshes: what actors look like to the sensor.
 
 Keys: "car/0" .. "car/3", "van/0", "van/1", "truck/0", "truck/1", "pedestrian/<variant>/<phase>" for a walker
 at a phase of its gait, "pedestrian/<variant>" for one who stands.
@@ -15,14 +15,11 @@ import numpy as np
 from datmo.arrays import F32, I32
 from datmo.errors import SimulationError, nearest
 from datmo.messages import Kind
-from scenarios import spec
-from sim.scene.bodies import cars, person, things
+from sim.scene.bodies import cars, person
 from sim.scene.bodies import truck as trucks
 from sim.scene.bodies.primitives import Shell
-from sim.scene.terrain import Terrain
 
 GAIT_PHASES = person.GAIT_PHASES
-THINGS = {"pole": Kind.POLE, "wall": Kind.WALL}
 VARIANTS = {
     Kind.CAR: ("car", len(cars.CARS)),
     Kind.VAN: ("van", len(cars.VANS)),
@@ -85,12 +82,6 @@ def asset(key: str) -> Asset:
     return _centred(key, kind, make())
 
 
-def thing(thing: spec.Thing, terrain: Terrain) -> Asset:
-    """A static thing on the ground; vertices in the WORLD frame, rooted a little below the ground."""
-    shell = things.shape(thing, terrain)
-    return _asset(f"thing/{thing.kind}", THINGS[thing.kind], shell, thing.size)
-
-
 @cache
 def _known() -> dict[str, tuple[Kind, Callable[[], Shell]]]:
     """How each key's shell is made."""
@@ -129,12 +120,12 @@ def _asset(key: str, kind: Kind, shell: Shell, size: tuple[float, float, float])
 
 @dataclass(frozen=True, eq=False)
 class Asset:
-    """A closed surface with a kind; things in the world frame, everything else in its actor frame.
+    """A closed surface with a kind, in its actor frame.
 
     Args:
         vertices: (v, 3) [m]. triangles: (t, 3), facing outwards.
-        size: length, width, height [m]; in the actor frame exactly the bounds of the vertices, which are
-            centred over x = y = 0 and rest on z = 0. Of a thing, without its root.
+        size: length, width, height [m], exactly the bounds of the vertices, which are centred over
+            x = y = 0 and rest on z = 0.
         reflectivity: (t,) diffuse, 0..1, at 905 nm.
     """
 

@@ -1,1 +1,1 @@
-"""Meshes of vehicles, persons and things, each in its actor frame."""
+"""Meshes of vehicles and persons, each in its actor frame."""

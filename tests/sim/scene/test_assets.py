@@ -6,11 +6,9 @@ import trimesh
 
 from datmo.errors import DatmoError
 from datmo.messages import Kind
-from scenarios import spec
 from sim.scene import assets
 from sim.scene.bodies import person, primitives
 from sim.scene.bodies.person import PERSONS
-from sim.scene.terrain import build_terrain
 
 PUBLISHED = {
     "car/0": (4.284, 1.789, 1.456),
@@ -165,28 +163,6 @@ def test_an_unknown_key_names_its_neighbours(key):
         assets.asset(key)
     with pytest.raises(DatmoError, match="no mesh of kind BUS"):
         assets.keys(Kind.BUS)
-
-
-@pytest.fixture(scope="module")
-def slope():
-    return build_terrain(spec.Terrain(grade=0.2), [], (-20, -20, 20, 20), np.random.SeedSequence(0))
-
-
-def test_a_pole_stands_rooted_in_the_ground(slope):
-    a = assets.thing(spec.Thing(kind="pole", at=(3, 5), size=(0.2, 0.2, 4)), slope)
-    assert a.kind == Kind.POLE
-    assert a.vertices[:, :2].mean(0) == pytest.approx([3, 5], abs=1e-4)
-    assert (a.vertices[:, 2].min(), a.vertices[:, 2].max()) == pytest.approx((0.7, 5.0), abs=1e-4)
-    assert trimesh.Trimesh(a.vertices, a.triangles, process=False).volume > 0
-
-
-def test_a_wall_follows_the_slope(slope):
-    a = assets.thing(spec.Thing(kind="wall", at=(0, 0), size=(10, 0.3, 2), yaw_deg=90), slope)
-    assert a.kind == Kind.WALL
-    assert a.size == (10, 0.3, 2)
-    assert np.ptp(a.vertices[:, :2], axis=0) == pytest.approx([0.3, 10], abs=1e-4)
-    above = a.vertices[:, 2] - slope.height_at(a.vertices[:, :2].astype(float))
-    assert np.unique(np.round(above, 3)) == pytest.approx([-0.3, 0.85, 2.0], abs=2e-3)
 
 
 def test_a_box_and_a_ball_enclose_their_volumes():
