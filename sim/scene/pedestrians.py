@@ -1,145 +1,132 @@
-"""Walkers: they go there and back, and wait at the kerb until the road before them is free."""
+"""The crowd: all people on foot of an episode, who keep off each other and off what drives and stands."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
-from scipy.spatial import cKDTree
 
-from datmo.arrays import F64, Bool
-from datmo.geometry import wrap_angle
+from datmo.arrays import F64
+from datmo.errors import ScenarioError
 from datmo.messages import Kind
 from scenarios import spec
-from sim.scene.assets import GAIT_PHASES, keys
-from sim.scene.autopilot import STEP, Claim, RightOfWay
-from sim.scene.bodies.person import stride
+from sim.scene.autopilot import RightOfWay
 from sim.scene.roads import Road
-from sim.scene.vehicles import State, body
+from sim.scene.vehicles import State
+from sim.scene.walkers.boxes import Boxes, join, of_states
+from sim.scene.walkers.contact import keep_out, part
+from sim.scene.walkers.party import RADIUS, Party
+from sim.scene.walkers.social import avoid, relax, shun, together
+from sim.scene.walkers.walker import Walker
 
 FIRST_ID = 101
-RADIUS = 0.4  # ground a walker needs [m]
-KERB = 0.3  # a road begins this far beyond its edge [m]
-WAIT_AT = 0.4  # a walker waits this far before that [m]
-PATIENCE = 2.0  # after it, only vehicles that could not stop any more are waited for [s]
-REST = 1.0  # at either end of a walk [s]
-ACCELERATION = 1.5  # [m/s²]
-TURNING = 3.0  # [rad/s]
-SPREAD = 0.3  # standard deviation of the walk's sideways place [m]
-PACE = 0.08  # and of the speed, relative
+LAST_ID = 999  # vehicles of traffic come after
+DRIVES = 0.1  # what is slower than this stands [m/s]
+NOTHING = join([])
 
 
-def on_road(points: F64, roads: Sequence[Road]) -> Bool:
-    """Which points (n, 2) [m, world] lie on a road, its kerb included."""
-    found = np.zeros(len(points), bool)
-    for road in roads:
-        found |= cKDTree(road.centerline).query(points)[0] < road.width / 2 + KERB
-    return found
-
-
-class Walker:
-    """One pedestrian of the scenario, with a pace, a line and a body of its own.
+class Crowd:
+    """All walkers of a scenario.
 
     Args:
-        walk: what the scenario says. roads: where it has to look. name: its id.
-        rng: of its variety.
+        walks: of the scenario. roads: where walkers have to look. seeds: one a walk, of its variety.
+        now: [s since the first scan].
+
+    Raises:
+        ScenarioError: there are more people than ids for them.
     """
 
     def __init__(
-        self, walk: spec.Pedestrian, roads: Sequence[Road], name: int, rng: np.random.Generator
+        self,
+        walks: Sequence[spec.Pedestrian],
+        roads: Sequence[Road],
+        seeds: Sequence[np.random.SeedSequence],
+        now: float,
     ) -> None:
-        self.walk, self.name = walk, name
-        looks = keys(Kind.PEDESTRIAN)
-        self.looks = body(looks[int(rng.integers(len(looks)))])
-        variant = int(self.looks.asset.split("/")[1])
-        self.stride = stride(variant)
-        self.pace = walk.speed * float(np.clip(1 + PACE * rng.normal(), 0.7, 1.3))
-        start, goal = np.array(walk.start), np.array(walk.goal)
-        self.length = float(np.hypot(*(goal - start)))
-        self.ahead = (goal - start) / max(self.length, 1e-9)
-        side = np.array([-self.ahead[1], self.ahead[0]])
-        self.start = start + side * float(np.clip(SPREAD * rng.normal(), -0.6, 0.6))
-        self.phase = float(rng.uniform(0, 1))
-        self.along, self.speed, self.way, self.rest = 0.0, 0.0, 1, walk.begin
-        self.yaw, self.walked = float(np.arctan2(self.ahead[1], self.ahead[0])), 0.0
-        self.allowed: tuple[float, float] | None = None
-        self.yaw_rate = self.waited = 0.0
-        self._crossings = self._find_crossings(roads)
+        first = FIRST_ID + np.cumsum([0, *(walk.group for walk in walks)])
+        if first[-1] > LAST_ID + 1:
+            raise ScenarioError(
+                f"pedestrians are {first[-1] - FIRST_ID} people in all; at most "
+                f"{LAST_ID + 1 - FIRST_ID} have ids; make groups smaller"
+            )
+        self.parties = [
+            Party(walk, roads, int(name), seed, now)
+            for walk, name, seed in zip(walks, first[:-1], seeds, strict=True)
+        ]
+        self.walkers = [one for party in self.parties for one in party.members]
+        self._party = [party for party in self.parties for _ in party.members]
+        self._group = np.array([i for i, p in enumerate(self.parties) for _ in p.members], np.int64)
 
-    def step(self, dt: float, right_of_way: RightOfWay) -> None:
-        """Walk for `dt` seconds, and claim the ground to be walked on."""
-        limit = self._limit(right_of_way)
-        self.waited = self.waited + dt if self.rest == 0 and self.speed < 0.05 else 0.0
-        stopping = np.sqrt(2 * ACCELERATION * max(limit, 0.0))
-        wish = 0.0 if self.rest > 0 or self.walk.behaviour == "waiting" else min(self.pace, stopping)
-        change = float(np.clip(wish - self.speed, -2 * ACCELERATION * dt, ACCELERATION * dt))
-        before, self.speed = self.speed, max(self.speed + change, 0.0)
-        moved = (before + self.speed) / 2 * dt
-        self.along = min(self.along + moved, self.length)
-        self.walked += moved
-        self.rest = max(self.rest - dt, 0.0)
-        if self.length - self.along < 0.02 and self.speed < 0.1 and self.walk.behaviour != "waiting":
-            self._turn_back()
-        self._turn(dt)
-        right_of_way.place(self.name, self.claim())
+    def states(self) -> list[State]:
+        """Where everyone is."""
+        return [one.state() for one in self.walkers]
 
-    def state(self) -> State:
-        """Where it is, with the mesh of this phase of its gait."""
-        heading = self.ahead * self.way
-        xy = self.start + self.ahead * (self.along if self.way > 0 else self.length - self.along)
-        looks = self.looks
-        if self.speed > 0.05:
-            cycle = self.phase + self.walked / self.stride
-            looks = replace(looks, asset=f"{looks.asset}/{int(cycle * GAIT_PHASES) % GAIT_PHASES}")
-        return State(self.name, looks, xy, self.yaw, heading * self.speed, self.yaw_rate)
+    def place(self, right_of_way: RightOfWay) -> None:
+        """Claim the ground that everyone stands on or is about to cross."""
+        for party, one in zip(self._party, self.walkers, strict=True):
+            right_of_way.place(one.name, party.claim(one.xy))
 
-    def _find_crossings(self, roads: Sequence[Road]) -> list[tuple[float, float]]:
-        """Stretches of the walk that lie on a road [m from its start]."""
-        s = np.arange(0.0, self.length, 0.1)
-        on = np.concatenate([[False], on_road(self.start + s[:, None] * self.ahead, roads), [False]])
-        flips = np.flatnonzero(on[1:] != on[:-1])
-        return [(0.1 * a, 0.1 * b) for a, b in zip(flips[::2], flips[1::2], strict=True)]
+    def step(
+        self, dt: float, right_of_way: RightOfWay, others: Sequence[State] = (), things: Boxes = NOTHING
+    ) -> None:
+        """Walk for `dt` seconds, and claim the ground to be walked on.
 
-    def _stretches(self) -> list[tuple[float, float]]:
-        """The crossings along the present direction."""
-        if self.way > 0:
-            return self._crossings
-        return [(self.length - b, self.length - a) for a, b in reversed(self._crossings)]
+        Args:
+            others: all other actors, the ego first. things: that stand about.
+        """
+        if not self.walkers:
+            return
+        for party in self.parties:
+            party.plan(dt, right_of_way, others)
+        driving = of_states([s for s in others if s.body.kind != Kind.PEDESTRIAN])
+        boxes = join([driving, things])
+        strangers = [s for s in others if s.body.kind == Kind.PEDESTRIAN]
+        wanted = self._wanted(dt, boxes, strangers)
+        points, reach = _threat(right_of_way, others)
+        for party, one, velocity in zip(self._party, self.walkers, wanted, strict=True):
+            safe = party.held(one, one.capped(velocity), dt)
+            one.move(_permitted(party, one, safe, points, reach, dt), party.facing, dt)
+        self.place(right_of_way)
 
-    def _limit(self, right_of_way: RightOfWay) -> float:
-        """How far it may walk on [m]; a road is stepped on only when its ground is free."""
-        for start, end in self._stretches():
-            if self.along >= end or self.along > start - WAIT_AT / 2 or self.allowed == (start, end):
-                continue
-            near = self.along > start - WAIT_AT - 1.0 and self.rest == 0
-            at_ease = self.waited < PATIENCE
-            if near and right_of_way.may_step(self._ground(self.along, end), at_ease):
-                self.allowed = start, end
-                continue
-            return start - WAIT_AT - self.along
-        return self.length - self.along
+    def _wanted(self, dt: float, boxes: Boxes, strangers: Sequence[State]) -> F64:
+        """Velocities (n, 2) after wishes, social forces and contacts."""
+        n = len(self.walkers)
+        standing = boxes.only(boxes.speed() < DRIVES)
+        wish = np.array([p.wish(one, standing) for p, one in zip(self._party, self.walkers, strict=True)])
+        xy = np.array([one.xy for one in self.walkers] + [s.xy for s in strangers])
+        v = np.array([one.velocity for one in self.walkers] + [s.velocity for s in strangers])
+        yaw = np.array([one.yaw for one in self.walkers] + [s.yaw for s in strangers])
+        half = np.array([one.half for one in self.walkers] + [(0.45, s.body.width / 2) for s in strangers])
+        force = avoid(xy, v)[:n] + together(xy[:n], v[:n], self._group)
+        if len(boxes):
+            force = force + shun(boxes.gap(xy[:n]))
+        v[:n] = relax(v[:n], wish, force, dt)
+        v = part(xy, v, yaw, half, np.arange(len(xy)) < n, dt)
+        return keep_out(xy[:n], v[:n], boxes, dt)
 
-    def claim(self) -> Claim:
-        """The rest of the road it is crossing, or the place where it stands."""
-        end = self.along
-        for start, stop in self._stretches():
-            inside = start - WAIT_AT / 2 < self.along < stop
-            if inside or (self.allowed == (start, stop) and self.along < stop):
-                end = stop
-        return self._ground(self.along, end)
 
-    def _ground(self, start: float, end: float) -> Claim:
-        s = np.arange(start, end + STEP, STEP)
-        s = s if self.way > 0 else self.length - s
-        return Claim(self.start + s[:, None] * self.ahead, RADIUS, walker=True)
+def _threat(right_of_way: RightOfWay, others: Sequence[State]) -> tuple[F64, F64]:
+    """Ground (m, 2) that moving vehicles would still pass if they braked, and its radii (m,) [m]."""
+    moving = [s.id for s in others if np.hypot(*s.velocity) > DRIVES]
+    claims = [right_of_way.brake[i] for i in moving if i in right_of_way.brake]
+    points = np.concatenate([np.zeros((0, 2)), *(c.points for c in claims)])
+    return points, np.concatenate([np.zeros(0), *(np.full(len(c.points), c.radius) for c in claims)])
 
-    def _turn_back(self) -> None:
-        self.way, self.along, self.speed = -self.way, self.length - self.along, 0.0
-        self.rest, self.allowed = REST, None
 
-    def _turn(self, dt: float) -> None:
-        heading = np.arctan2(*(self.ahead * self.way)[::-1])
-        change = float(np.clip(wrap_angle(heading - self.yaw), -TURNING * dt, TURNING * dt))
-        self.yaw += change
-        self.yaw_rate = change / dt
+def _permitted(party: Party, one: Walker, velocity: F64, points: F64, reach: F64, dt: float) -> F64:
+    """A velocity (2,) that leads onto no ground a vehicle needs to stop.
+
+    The rest of an open road is the walker's own: straight on is always allowed there.
+    """
+
+    def free(v: F64) -> bool:
+        mine = party.claim(one.xy + (one.velocity + v) / 2 * dt).points
+        apart = np.hypot(*(mine[:, None] - points[None]).transpose(2, 0, 1))
+        return bool((apart >= reach + RADIUS).all())
+
+    still = np.zeros(2)
+    if free(velocity) or not free(-one.velocity):  # or it stands on such ground already, and leaves it
+        return velocity
+    ahead = party.line.ahead(party.way)
+    straight = ahead * max(float((velocity * ahead).sum()), 0.0)
+    return straight if party.open or free(straight) else still

@@ -17,8 +17,7 @@ from sim.scene.contact import stand
 from sim.scene.curve import hermite
 from sim.scene.flow import Traffic
 from sim.scene.motion import Poses, edges
-from sim.scene.pedestrians import FIRST_ID as FIRST_WALKER
-from sim.scene.pedestrians import Walker
+from sim.scene.pedestrians import Crowd
 from sim.scene.roads import Road
 from sim.scene.script import Script
 from sim.scene.terrain import Terrain, build_terrain
@@ -153,13 +152,8 @@ class World:
         self._traffic = Traffic(scenario, self._traffic_seed)
         self._tick = -(self._warm_up + 1) * self._steps
         self._scripts = [(Script(a), body(f"{a.kind}/{a.variant}")) for a in scenario.actors]
-        self._walkers = [
-            Walker(walk, self._traffic.roads, FIRST_WALKER + i, np.random.default_rng(seed))
-            for i, (walk, seed) in enumerate(zip(scenario.pedestrians, self._walker_seeds, strict=True))
-        ]
-        for walker in self._walkers:
-            walker.rest -= self.time
-            self._traffic.way.place(walker.name, walker.claim())
+        self._crowd = Crowd(scenario.pedestrians, self._traffic.roads, self._walker_seeds, self.time)
+        self._crowd.place(self._traffic.way)
         self._claim_scripts()
         self._traffic.populate()
 
@@ -171,8 +165,7 @@ class World:
         dt = 1.0 / (self._steps * self.scenario.rate)
         for _ in range(self._steps):
             self._claim_scripts()
-            for walker in self._walkers:
-                walker.step(dt, self._traffic.way)
+            self._crowd.step(dt, self._traffic.way, self._others())
             self._traffic.step(dt)
             self._tick += 1
             knots.append(self._states())
@@ -180,9 +173,14 @@ class World:
         return knots
 
     def _states(self) -> list[State]:
+        ego, *others = self._others()
+        scripted, driven = others[: len(self._scripts)], others[len(self._scripts) :]
+        return [ego, *scripted, *self._crowd.states(), *driven]
+
+    def _others(self) -> list[State]:
+        """Everyone but the walkers: the ego, scripts, traffic."""
         scripted = [s.state(FIRST_SCRIPT + i, looks, self.time) for i, (s, looks) in enumerate(self._scripts)]
-        walking = [walker.state() for walker in self._walkers]
-        return [self._traffic.ego_state(), *scripted, *walking, *self._traffic.states()]
+        return [self._traffic.ego_state(), *scripted, *self._traffic.states()]
 
     def _claim_scripts(self) -> None:
         for i, (script, looks) in enumerate(self._scripts):

@@ -1,0 +1,70 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from sim.scene.walkers.boxes import Boxes
+from sim.scene.walkers.contact import SIDE, keep_out, part
+from sim.scene.walkers.sight import KEEP, look
+
+AHEAD = np.array([1.0, 0.0])
+
+
+def boxes(*rows: tuple[float, float, float, float, float], v: tuple[float, float] = (0, 0)) -> Boxes:
+    a = np.array(rows, float).reshape(-1, 5)
+    return Boxes(a[:, :2], a[:, 2:4] / 2, np.radians(a[:, 4]), np.tile(np.array(v, float), (len(a), 1)))
+
+
+def test_the_gap_to_a_turned_box() -> None:
+    one = boxes((1, 1, 4, 2, 90))
+    points = np.array([[3.0, 1.0], [1.0, 4.5], [4.0, 7.0], [1.9, 1.0]])
+    expected = [[[1, 0]], [[0, 1.5]], [[2, 4]], [[1e-5, 0]]]
+    np.testing.assert_allclose(one.gap(points), expected, atol=1e-12)
+
+
+def test_nothing_in_the_way_is_straight_on() -> None:
+    np.testing.assert_allclose(
+        look(np.zeros(2), np.array([0.6, 0.8]), np.array([3.0, 4.0]), 1.4, boxes()), [0.84, 1.12]
+    )
+    behind = boxes((-3, 0, 4, 2, 0), (9, 0, 1, 1, 0))  # the other is beyond the goal
+    np.testing.assert_allclose(look(np.zeros(2), AHEAD, 2 * AHEAD, 1.4, behind), [1.4, 0], atol=1e-12)
+
+
+def test_a_wall_ahead_is_passed_on_its_nearer_side() -> None:
+    v = look(np.zeros(2), AHEAD, 20 * AHEAD, 1.4, boxes((5, 1, 0.5, 4, 0)))
+    assert v[1] < 0
+    at = v * (4.75 / v[0])
+    assert at[1] < -1 - KEEP
+    assert np.hypot(*v) == pytest.approx(1.4)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(0, 10**6))
+def test_after_contact_no_ellipses_come_nearer_than_touching(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    x = rng.uniform(0, 2.5, (2, 2)) + np.array([[0, 0], [1.2, 0]])
+    v, yaw = rng.normal(0, 1.5, (2, 2)), rng.uniform(-3, 3, 2)
+    half, dt = np.tile([0.45, 0.28], (2, 1)), 0.05
+    n = (x[0] - x[1]) / np.linalg.norm(x[0] - x[1])
+    reach = sum(
+        np.sqrt((h[0] * n @ [np.cos(a), np.sin(a)]) ** 2 + (h[1] * n @ [-np.sin(a), np.cos(a)]) ** 2)
+        for h, a in zip(half, yaw, strict=True)
+    )
+    room = np.linalg.norm(x[0] - x[1]) - reach
+    after = part(x, v, yaw, half, np.array([True, True]), dt)
+    assert (after[0] - after[1]) @ n * dt >= min(-room, 1.5 * dt) - 1e-9
+    np.testing.assert_allclose(after.sum(0), v.sum(0), atol=1e-9)
+    fixed = part(x, v, yaw, half, np.array([True, False]), dt)
+    np.testing.assert_array_equal(fixed[1], v[1])
+
+
+def test_nobody_steps_into_a_vehicle_and_a_moving_one_pushes_ahead() -> None:
+    wall = boxes((3, 0, 2, 10, 0))
+    x, v = np.array([[1.55, 0.0]]), np.array([[1.4, 0.3]])
+    after = keep_out(x, v, wall, 0.1)
+    assert x[0, 0] + 0.1 * after[0, 0] == pytest.approx(2 - SIDE)
+    assert after[0, 1] == 0.3
+    moving = boxes((3, 0, 2, 10, 0), v=(-1.0, 0))
+    assert keep_out(np.array([[1.6, 0.0]]), np.zeros((1, 2)), moving, 0.1)[0, 0] <= -1.0 + 1e-9
