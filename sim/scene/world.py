@@ -19,6 +19,7 @@ from sim.scene.flow import Traffic
 from sim.scene.motion import Poses, edges
 from sim.scene.pedestrians import Crowd
 from sim.scene.roads import Road
+from sim.scene.scenery.around import around as surroundings
 from sim.scene.script import Script
 from sim.scene.terrain import Terrain, build_terrain
 from sim.scene.traffic import action_space
@@ -78,6 +79,7 @@ class World:
 
     Attributes:
         terrain: the ground. roads: clipped to it. things: that stand on it.
+        parked: vehicles that stand beside the roads.
         time: of the last sweep's end [s since the first scan].
     """
 
@@ -92,7 +94,7 @@ class World:
         area = around(self._traffic.reachable(scenario.duration), scenario.sensor.range + AROUND)
         self.roads = clip(self._traffic.roads, area)
         self.terrain: Terrain = build_terrain(scenario.terrain, self.roads, area, ground)
-        self.things = scenario.things
+        self.things, self.parked = surroundings(scenario, self.roads, self.terrain, seed)
 
     @staticmethod
     def actions(scenario: Scenario) -> Space[Any]:

@@ -12,7 +12,7 @@ from datmo.messages import Kind
 from scenarios import spec
 from sim.scene.assets import asset, keys
 from sim.scene.roads import Road
-from sim.scene.scenery.plot import beyond, outline, rectangle
+from sim.scene.scenery.plot import beyond, outline, overlap, rectangle
 from sim.scene.scenery.verge import verges
 
 Area = tuple[float, float, float, float]
@@ -41,12 +41,17 @@ class Parked:
 
 
 def parked(
-    scenery: spec.Scenery, roads: Sequence[Road], seed: np.random.SeedSequence, area: Area
+    scenery: spec.Scenery,
+    roads: Sequence[Road],
+    seed: np.random.SeedSequence,
+    area: Area,
+    taken: Sequence[F64] = (),
 ) -> tuple[Parked, ...]:
     """The vehicles that a scenery's parking makes, off every road, heading with the traffic.
 
     Args:
         area: x_min, y_min, x_max, y_max where they may have their middle [m, world].
+        taken: polygons (p, 2) that stay free [m, world].
     """
     rule = scenery.parking
     found: list[Parked] = []
@@ -63,7 +68,8 @@ def parked(
                 continue
             xy = verge.at(np.array([s]), np.array([rule.gap + width / 2 + ASKEW * length]))[0]
             one = Parked(key, kind, xy, verge.yaw(s) + float(askew[i]))
-            if area[0] <= xy[0] <= area[2] and area[1] <= xy[1] <= area[3] and _free(one, roads, found):
+            inside = area[0] <= xy[0] <= area[2] and area[1] <= xy[1] <= area[3]
+            if inside and _free(one, roads, found) and not any(overlap(one.corners, p) for p in taken):
                 found.append(one)
     return tuple(found)
 
