@@ -8,12 +8,22 @@ from dataclasses import dataclass
 import numpy as np
 
 from datmo.arrays import F64, Bool
+from datmo.errors import SimulationError, nearest
 from datmo.messages import Kind
 from sim.scene.assets import asset, keys
 from sim.scene.course import Key, Lane
 
-FLEET = (*keys(Kind.CAR), *keys(Kind.VAN))
-"""Meshes of traffic, each as likely as the others."""
+FLEET = (*keys(Kind.CAR)[:4], *keys(Kind.VAN))
+"""Meshes of traffic where nothing is said of its mix, each as likely as the others."""
+DRIVEN = {
+    "car": Kind.CAR,
+    "van": Kind.VAN,
+    "truck": Kind.TRUCK,
+    "bus": Kind.BUS,
+    "motorcycle": Kind.MOTORCYCLE,
+    "bicycle": Kind.BICYCLE,
+}
+"""What may be named in a mix of traffic."""
 
 
 @dataclass(frozen=True)
@@ -24,6 +34,7 @@ class Body:
     kind: Kind
     length: float
     width: float
+    height: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +57,33 @@ class State:
 def body(key: str) -> Body:
     """The body of a mesh."""
     made = asset(key)
-    return Body(key, made.kind, float(made.size[0]), float(made.size[1]))
+    return Body(key, made.kind, *made.size)
+
+
+def fleet(mix: Mapping[str, float]) -> tuple[tuple[str, ...], F64]:
+    """Meshes of a mix of traffic and how likely each is: a kind's share, spread evenly over its variants.
+
+    Args:
+        mix: shares of kinds by their names in DRIVEN; they need not add up to 1.
+
+    Raises:
+        SimulationError: an unknown kind, a share that is negative or not finite, or nothing above 0.
+    """
+    for name, share in mix.items():
+        if name not in DRIVEN:
+            raise SimulationError(f"{name!r} does not drive; {nearest(name, DRIVEN)}")
+        if not (np.isfinite(share) and share >= 0):
+            raise SimulationError(f"the share of {name} is {share}; it must be finite and 0 or more")
+    total = sum(mix.values())
+    if not total > 0:
+        raise SimulationError(f"no kind of the mix {dict(mix)} has a share above 0; give one")
+    made: list[str] = []
+    weights: list[float] = []
+    for name, share in mix.items():
+        variants = keys(DRIVEN[name])
+        made += variants
+        weights += [share / total / len(variants)] * len(variants)
+    return tuple(made), np.array(weights)
 
 
 class Places:

@@ -4,6 +4,8 @@
 1 saloon: Toyota Camry XV70, 4.885 x 1.840 x 1.445 m, wheelbase 2.825 m
 2 sport utility: Toyota RAV4 XA50, 4.600 x 1.855 x 1.685 m, wheelbase 2.690 m
 3 small: Fiat 500, 3.546 x 1.627 x 1.488 m, wheelbase 2.300 m
+4 estate: VW Passat B8 Variant, 4.767 x 1.832 x 1.477 m, wheelbase 2.791 m
+5 pick-up: Toyota Hilux AN120 double cab, 5.325 x 1.855 x 1.815 m, wheelbase 3.085 m
 van 0: VW Transporter T6, 4.904 x 1.904 x 1.990 m, wheelbase 3.000 m
 van 1: Mercedes-Benz Sprinter, 5.932 x 2.020 x 2.630 m, wheelbase 3.665 m
 Widths are without mirrors. Heights of belt and bonnet are read off side views.
@@ -13,7 +15,8 @@ from __future__ import annotations
 
 from sim.scene.bodies import materials as m
 from sim.scene.bodies.primitives import Shell
-from sim.scene.bodies.vehicle import Body, assembled
+from sim.scene.bodies.variety import NOMINAL, Variety
+from sim.scene.bodies.vehicle import Body, Car, assembled, varied
 
 HATCHBACK = Body(
     4.284, 1.789, 0.2, (0.88, 3.516), 0.316, 0.205,
@@ -85,24 +88,55 @@ SPRINTER = Body(
     screens=((0.8, 1.55),),
 )  # fmt: skip
 
-# body, paint, height of plate, mirror (s, height)
+ESTATE = Body(
+    4.767, 1.832, 0.19, (0.9, 3.691), 0.33, 0.215,
+    top=((0, 0.6), (0.06, 0.7), (0.22, 0.76), (1.25, 0.98), (2.1, 1.4), (2.55, 1.477), (3.6, 1.46),
+         (4.35, 1.38), (4.66, 1.0), (4.72, 0.92), (4.767, 0.6)),
+    belt=((0, 0.5), (0.33, 0.7), (1.25, 0.92), (4.4, 1.0), (4.767, 0.55)),
+    roof=((0, 0.8), (1.25, 0.86), (2.1, 0.68), (4.35, 0.64), (4.7, 0.82), (4.767, 0.85)),
+    sides=((0, 0.7), (0.06, 0.83), (0.28, 0.95), (0.75, 1), (4.0, 1), (4.55, 0.95), (4.72, 0.87),
+           (4.767, 0.76)),
+    windows=((1.6, 2.45), (2.55, 3.35), (3.45, 4.2)),
+    screens=((1.25, 2.1), (4.35, 4.66)),
+)  # fmt: skip
+
+PICKUP = Body(
+    5.325, 1.855, 0.3, (0.985, 4.07), 0.385, 0.255,
+    top=((0, 0.82), (0.06, 0.98), (0.22, 1.06), (1.4, 1.18), (1.95, 1.68), (2.3, 1.8), (2.8, 1.815),
+         (3.4, 1.79), (3.56, 1.2), (3.66, 0.8), (5.27, 0.8), (5.325, 0.7)),
+    belt=((0, 0.66), (0.3, 0.95), (1.4, 1.12), (3.5, 1.16), (3.66, 0.77), (5.325, 0.66)),
+    roof=((0, 0.86), (1.4, 0.9), (1.95, 0.74), (3.4, 0.74), (3.66, 0.95), (5.325, 0.95)),
+    sides=((0, 0.76), (0.06, 0.87), (0.25, 0.96), (0.7, 1), (5.2, 1), (5.27, 0.98), (5.325, 0.96)),
+    windows=((1.65, 2.5), (2.6, 3.35)),
+    screens=((1.4, 1.95), (3.4, 3.56)),
+)  # fmt: skip
+BED = (
+    ((3.68, 5.3), (0.9, 0.99), (0.72, 1.24)),
+    ((3.68, 5.3), (-0.99, -0.9), (0.72, 1.24)),
+    ((5.24, 5.315), (-0.97, 0.97), (0.72, 1.22)),
+)
+
 CARS = (
-    (HATCHBACK, m.PAINT[1], 0.45, (1.55, 1.0)),
-    (SALOON, m.PAINT[2], 0.45, (1.8, 0.99)),
-    (UTILITY, m.PAINT[0], 0.55, (1.62, 1.15)),
-    (SMALL, m.PAINT[3], 0.42, (1.3, 1.02)),
+    Car(HATCHBACK, m.PAINT[1], 0.45, (1.55, 1.0)),
+    Car(SALOON, m.PAINT[2], 0.45, (1.8, 0.99)),
+    Car(UTILITY, m.PAINT[0], 0.55, (1.62, 1.15)),
+    Car(SMALL, m.PAINT[3], 0.42, (1.3, 1.02)),
+    Car(ESTATE, m.PAINT[2], 0.45, (1.7, 1.0)),
+    Car(PICKUP, m.PAINT[1], 0.6, (1.75, 1.2), BED),
 )
+CAR_WORDS = ("hatchback", "saloon", "sport utility", "small car", "estate", "pick-up")
 VANS = (
-    (TRANSPORTER, m.PAINT[0], 0.5, (1.1, 1.22)),
-    (SPRINTER, m.PAINT[1], 0.55, (1.15, 1.35)),
+    Car(TRANSPORTER, m.PAINT[0], 0.5, (1.1, 1.22)),
+    Car(SPRINTER, m.PAINT[1], 0.55, (1.15, 1.35)),
 )
+VAN_WORDS = ("transporter", "high van")
 
 
-def car(variant: int) -> Shell:
+def car(variant: int, variety: Variety = NOMINAL) -> Shell:
     """The car `variant` of CARS."""
-    return assembled(*CARS[variant])
+    return assembled(varied(CARS[variant], variety))
 
 
-def van(variant: int) -> Shell:
+def van(variant: int, variety: Variety = NOMINAL) -> Shell:
     """The van `variant` of VANS."""
-    return assembled(*VANS[variant])
+    return assembled(varied(VANS[variant], variety))

@@ -8,7 +8,7 @@ nothing; number plates and lamps are retro-reflectors.
 from __future__ import annotations
 
 PAINT = (0.55, 0.35, 0.2, 0.45)  # white, silver, dark, bright colour
-GLASS = 0.05
+GLASS = 0.0002
 TYRE = 0.06
 RIM = 0.45
 UNDERBODY = 0.1
@@ -23,3 +23,6 @@ CLOTH = (0.35, 0.55, 0.25, 0.6)
 TROUSERS = (0.3, 0.2, 0.4, 0.3)
 SHOE = 0.12
 CONCRETE = 0.35
+HELMET = 0.4
+COAT = (0.3, 0.2, 0.45, 0.25)
+ENGINE = 0.2

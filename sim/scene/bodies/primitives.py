@@ -150,3 +150,26 @@ def wheel(
     radial = np.hypot(*shell.vertices[shell.triangles][..., [0, 2]].mean(1).T)
     shade = np.where(radial < 0.6 * radius, rim, shell.reflectivity)
     return Shell(shell.vertices, shell.triangles, shade).placed(center)
+
+
+def hoop(
+    center: Sequence[float],
+    radius: float,
+    thickness: float,
+    width: float,
+    reflectivity: float,
+    sides: int = 24,
+) -> Shell:
+    """A bare tyre about the y axis, of rectangular section; stands as a `wheel` does; center (3,) [m]."""
+    turn = 2 * np.pi * (np.arange(sides) + 0.5) / sides
+    r = radius / np.cos(np.pi / sides)
+    profile = ((r, -width / 2), (r, width / 2), (r - thickness, width / 2), (r - thickness, -width / 2))
+    rings = np.stack(
+        [np.column_stack([a * np.cos(turn), np.full(sides, b), a * np.sin(turn)]) for a, b in profile]
+    )
+    here = np.arange(4 * sides).reshape(4, sides)
+    far = np.roll(here, -1, 0)
+    side, far_side = np.roll(here, -1, 1), np.roll(far, -1, 1)
+    quads = np.stack([np.stack([here, side, far_side], -1), np.stack([here, far_side, far], -1)], 2)
+    triangles = quads.reshape(-1, 3)
+    return _outward(rings.reshape(-1, 3), triangles, np.full(len(triangles), reflectivity)).placed(center)

@@ -9,15 +9,18 @@ screens between edge and edge over the top.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from datmo.arrays import F64, Array
 from sim.scene.bodies import materials as m
 from sim.scene.bodies.primitives import Shell, box, join, loft, wheel
+from sim.scene.bodies.variety import Variety
 
 Curve = tuple[tuple[float, float], ...]  # (s [m], value)
+Spans = tuple[tuple[float, float], ...]  # from s to s [m]
+Span = tuple[float, float]
 LAMP_ROWS, GLASS_ROWS, ROOF_ROWS = np.array([3, 9]), np.array([4, 8]), np.array([5, 6, 7])
 ARCH = (-1.0, -0.995, -0.92, -0.7, -0.38, 0.0, 0.38, 0.7, 0.92, 0.995, 1.0)
 INSET = 0.008  # the bumpers lie behind the plates, which end the vehicle [m]
@@ -42,8 +45,25 @@ class Body:
     belt: Curve
     roof: Curve
     sides: Curve
-    windows: tuple[tuple[float, float], ...]
-    screens: tuple[tuple[float, float], ...]
+    windows: Spans
+    screens: Spans
+
+
+@dataclass(frozen=True)
+class Car:
+    """A body and what is put on it.
+
+    Attributes:
+        paint: its reflectivity. plate: height of the number plates [m].
+        mirror: (s, height) [m].
+        walls: of an open bed, each from s to s [m], from y to y over half the width, from z to z [m].
+    """
+
+    body: Body
+    paint: float
+    plate: float
+    mirror: tuple[float, float]
+    walls: tuple[tuple[Span, Span, Span], ...] = ()
 
 
 def _at(curve: Curve, s: Array) -> F64:
@@ -126,6 +146,67 @@ def mirrors(body: Body, s: float, height: float) -> list[Shell]:
     return [box((body.length / 2 - s, j * y, height), (0.12, 0.18, 0.14), m.TRIM) for j in (1, -1)]
 
 
-def assembled(body: Body, paint: float, plate: float, mirror: tuple[float, float]) -> Shell:
+def walls(car: Car) -> list[Shell]:
+    """The walls of an open bed, if there is one."""
+    half, front = car.body.width / 2, car.body.length / 2
+    return [
+        box(
+            (front - (s0 + s1) / 2, half * (y0 + y1) / 2, (z0 + z1) / 2),
+            (s1 - s0, half * (y1 - y0), z1 - z0),
+            car.paint,
+        )
+        for (s0, s1), (y0, y1), (z0, z1) in car.walls
+    ]
+
+
+def varied(car: Car, variety: Variety, widest: float = np.inf) -> Car:
+    """Another car of the same class: bonnet, wheelbase, overhangs, width, height, wheels, paint.
+
+    Cars of one class differ by so much: lengths of compact hatchbacks run from 4.05 to 4.38 m, widths from
+    1.75 to 1.83 m, heights from 1.43 to 1.50 m (Polo, Golf, Astra, Focus; makers' data). None is wider than
+    `widest` [m].
+    """
+    b = car.body
+    front, rear = b.axles[0], b.axles[-1]
+    middle = (front + rear) / 2
+    old = np.array([0.0, front, middle, rear, b.length])
+    base = variety.about(rear - front, 0.04)
+    new = np.cumsum(
+        [0.0, variety.about(front, 0.05), base / 2, base / 2, variety.about(b.length - rear, 0.06)]
+    )
+    new[2] = variety.about(1.0, 0.03) * (new[2] - new[1]) + new[1]
+    tall = variety.about(1.0, 0.03)
+
+    def along(s: float) -> float:
+        return s if np.array_equal(new, old) else float(np.interp(s, old, new))
+
+    def spans(given: Spans) -> Spans:
+        return tuple((along(a), along(c)) for a, c in given)
+
+    def curve(given: Curve, factor: float = 1.0) -> Curve:
+        return tuple((along(s), value * factor) for s, value in given)
+
+    body = replace(
+        b, length=along(b.length), width=min(variety.about(b.width, 0.02), widest),
+        axles=tuple(map(along, b.axles)),
+        wheel_radius=variety.about(b.wheel_radius, 0.03), top=curve(b.top, tall), belt=curve(b.belt, tall),
+        roof=curve(b.roof), sides=curve(b.sides), windows=spans(b.windows), screens=spans(b.screens),
+    )  # fmt: skip
+    moved = tuple((spans((s,))[0], y, (z[0] * tall, z[1] * tall)) for s, y, z in car.walls)
+    paint = variety.about(variety.pick(car.paint, m.PAINT), 0.1)
+    mirror = along(car.mirror[0]), car.mirror[1] * tall
+    return replace(car, body=body, paint=paint, mirror=mirror, walls=moved)
+
+
+def assembled(car: Car) -> Shell:
     """The whole car or van."""
-    return join([hull(body, paint), *wheels(body), *plates(body, plate), *mirrors(body, *mirror)])
+    body = car.body
+    return join(
+        [
+            hull(body, car.paint),
+            *wheels(body),
+            *plates(body, car.plate),
+            *mirrors(body, *car.mirror),
+            *walls(car),
+        ]
+    )

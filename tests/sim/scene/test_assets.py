@@ -7,21 +7,34 @@ import trimesh
 from datmo.errors import DatmoError
 from datmo.messages import Kind
 from sim.scene import assets
-from sim.scene.bodies import person, primitives
-from sim.scene.bodies.person import PERSONS
+from sim.scene.bodies import materials, primitives
+from sim.scene.vehicles import DRIVEN, body, fleet
 
 PUBLISHED = {
     "car/0": (4.284, 1.789, 1.456),
     "car/1": (4.885, 1.840, 1.445),
     "car/2": (4.600, 1.855, 1.685),
     "car/3": (3.546, 1.627, 1.488),
+    "car/4": (4.767, 1.832, 1.477),
+    "car/5": (5.325, 1.855, 1.815),
     "van/0": (4.904, 1.904, 1.990),
     "van/1": (5.932, 2.020, 2.630),
     "truck/0": (8.4, 2.5, 3.4),
     "truck/1": (10.6, 2.55, 3.8),
+    "truck/2": (16.5, 2.55, 4.0),
+    "bus/0": (11.95, 2.55, 3.076),
 }
 VEHICLES = list(PUBLISHED)
-WALKERS = [f"pedestrian/{v}/{p}" for v in range(4) for p in (0, 3, 7, 12)] + ["pedestrian/1"]
+WALKERS = [f"pedestrian/{v}/{p}" for v in range(4) for p in (0, 3, 7, 12)]
+WALKERS += ["pedestrian/1", "pedestrian/4/2", "pedestrian/5/run/3", "pedestrian/6/0", "pedestrian/7/run/12"]
+
+
+def forms_of(key):
+    """A person at rest and at all phases of both gaits; else the key alone."""
+    if not key.startswith("pedestrian"):
+        return (key,)
+    still = assets.at_rest(key)
+    return still, *(assets.at_phase(still, p, g) for g in ("walk", "run") for p in range(assets.GAIT_PHASES))
 
 
 def faces(asset):
@@ -48,13 +61,16 @@ def distance_between(asset, origin, direction):
 @pytest.mark.parametrize("key", VEHICLES + WALKERS)
 def test_size_is_the_bounds_and_the_box_stands_on_the_origin(key):
     a = assets.asset(key)
-    low, high = a.vertices.min(0), a.vertices.max(0)
+    forms = [assets.asset(k) for k in forms_of(key)]
+    low = np.min([f.vertices.min(0) for f in forms], 0)
+    high = np.max([f.vertices.max(0) for f in forms], 0)
     assert a.size == tuple(np.float32(high - low).astype(float))
+    assert all(f.size == a.size for f in forms)
     assert (low[:2] + high[:2]) == pytest.approx(0, abs=1e-6)
-    assert low[2] == 0
+    assert low[2] == a.vertices[:, 2].min() == 0
     assert (a.vertices.dtype, a.triangles.dtype, a.reflectivity.dtype) == (np.float32, np.int32, np.float32)
     assert len(a.triangles) == len(a.reflectivity)
-    assert 300 < len(a.triangles) < 2600
+    assert 300 < len(a.triangles) < 3000
     assert ((a.reflectivity > 0) & (a.reflectivity <= 1)).all()
 
 
@@ -96,7 +112,8 @@ def test_a_ray_from_above_meets_the_roof_and_one_from_the_side_a_tyre(key):
 def _front_wheel(a):
     """x at which the front tyres stand."""
     on_ground = a.vertices[a.vertices[:, 2] < 1e-4]
-    return float(on_ground[on_ground[:, 0] > 0.1 * a.size[0], 0].mean())
+    x = on_ground[:, 0]
+    return float(x[x > x.max() - 0.5].mean())
 
 
 @pytest.mark.parametrize("key", [k for k in VEHICLES if k.startswith("car")])
@@ -107,7 +124,7 @@ def test_a_car_has_a_bonnet_lower_than_its_roof_and_dark_sloped_screens(key):
     assert 10 - bonnet < 0.72 * height
     assert a.reflectivity[at] > 0.1
     middle, normal = faces(a)
-    glass = a.reflectivity == np.float32(0.05)
+    glass = a.reflectivity == np.float32(materials.GLASS)
     up = normal[:, 2] / np.linalg.norm(normal, axis=1)
     ahead = glass & (normal[:, 0] > 0) & (np.abs(normal[:, 1]) < np.abs(normal[:, 0]))
     slope = np.degrees(np.arccos(up[ahead & (middle[:, 0] > 0)]))
@@ -116,53 +133,72 @@ def test_a_car_has_a_bonnet_lower_than_its_roof_and_dark_sloped_screens(key):
     assert np.linalg.norm(normal[glass], axis=1).sum() > 1.5  # square metres
 
 
-@pytest.mark.parametrize("variant", range(4))
-def test_a_walker_steps_with_both_feet_and_swings_arms_against_them(variant):
-    lengths = [assets.pedestrian(p, variant).size[0] for p in range(assets.GAIT_PHASES)]
-    h = PERSONS[variant].height
-    assert max(lengths) - min(lengths) > 0.2 * h
-    for p in range(8):  # half a cycle on, left has become right
-        a, b = person.person(variant, p), person.person(variant, p + 8)
-        mirrored = a.vertices * [1, -1, 1]
-        assert sorted(np.round(mirrored[:, 2], 6)) == sorted(np.round(b.vertices[:, 2], 6))
-        assert np.round(mirrored.min(0), 6) == pytest.approx(np.round(b.vertices.min(0), 6), abs=1e-5)
-    for p in range(assets.GAIT_PHASES):
-        assert assets.pedestrian(p, variant).size[2] == pytest.approx(h, rel=0.03)
-    assert assets.pedestrian(None, variant).size[2] == pytest.approx(h, rel=0.01)
-    assert assets.stride(variant) == pytest.approx(0.83 * h)
-
-
-@pytest.mark.parametrize("variant", range(4))
-def test_the_stance_foot_goes_back_as_fast_as_the_body_goes_on(variant):
-    """While it rests on the ground it slips by under a tenth of the stride."""
-    ankles = []
-    for cycle in (0.15, 0.45):
-        pose = person._walking(cycle)
-        thigh, shank = 0.245 * person._ahead(pose.hip), 0.246 * person._ahead(pose.hip - pose.knee)
-        ankles.append(((thigh + shank) * PERSONS[variant].height)[0])
-    assert ankles[0] - ankles[1] == pytest.approx(
-        0.3 * assets.stride(variant), abs=0.1 * assets.stride(variant)
-    )
-
-
 def test_keys_and_makers_agree_and_assets_are_made_once():
-    for kind, name, count in ((Kind.CAR, "car", 4), (Kind.VAN, "van", 2), (Kind.TRUCK, "truck", 2)):
+    for kind, name, count in ((Kind.CAR, "car", 6), (Kind.VAN, "van", 2), (Kind.TRUCK, "truck", 3)):
         assert assets.keys(kind) == tuple(f"{name}/{i}" for i in range(count))
-    assert len(assets.keys(Kind.PEDESTRIAN)) == 4
-    for kind in (Kind.CAR, Kind.VAN, Kind.TRUCK, Kind.PEDESTRIAN):
+    assert len(assets.keys(Kind.PEDESTRIAN)) == 8
+    for kind in (*DRIVEN.values(), Kind.PEDESTRIAN):
         assert all(assets.asset(k).kind == kind for k in assets.keys(kind))
     assert assets.car(2) is assets.asset("car/2")
+    assert assets.asset("car/2~0") is assets.asset("car/2")
     assert assets.pedestrian(5, 1) is assets.asset("pedestrian/1/5")
     with pytest.raises(ValueError, match="read-only"):
         assets.car(0).vertices[0] = 0
 
 
-@pytest.mark.parametrize("key", ["car/4", "cat/0", "pedestrian/0/16", "pedestrian/-1/0", ""])
-def test_an_unknown_key_names_its_neighbours(key):
+def test_the_catalogue_names_every_variant_once_and_says_what_it_is():
+    listed = assets.catalogue()
+    assert len(set(listed)) == len(listed) == 6 + 2 + 3 + 8 + 1 + 1 + 2
+    assert {assets.asset(k).kind for k in listed} == {*DRIVEN.values(), Kind.PEDESTRIAN}
+    assert assets.describe("car/0") == "hatchback, 4.3 x 1.8 x 1.5 m"
+    assert assets.describe("pedestrian/4/run/3~2").startswith("child of six, 0.")
+
+
+@pytest.mark.parametrize(
+    "key",
+    ["car/6", "cat/0", "car/0/1", "car/00", "car/0~32", "car/0~01", "pedestrian/0/16", "pedestrian/-1/0",
+     "pedestrian/0/run", "pedestrian/0/walk/3", "bicycle/0/run/3", "motorcycle/0/1", "", "car/0 "],
+)  # fmt: skip
+def test_an_unknown_key_is_refused(key):
     with pytest.raises(DatmoError, match="no asset"):
         assets.asset(key)
-    with pytest.raises(DatmoError, match="no mesh of kind BUS"):
-        assets.keys(Kind.BUS)
+
+
+def test_what_has_no_mesh_or_no_gait_is_named():
+    with pytest.raises(DatmoError, match="no mesh of kind ROAD"):
+        assets.keys(Kind.ROAD)
+    with pytest.raises(DatmoError, match="has no gait"):
+        assets.at_phase("car/0", 3)
+    with pytest.raises(DatmoError, match="did you mean 'run'"):
+        assets.at_phase("pedestrian/0", 3, "runn")
+    with pytest.raises(DatmoError, match="did you mean 'car/1'"):
+        assets.asset("cra/1")
+
+
+def test_phases_of_one_body_have_keys_of_its_seed():
+    assert assets.at_phase("pedestrian/2~9", 19) == "pedestrian/2/3~9"
+    assert assets.at_phase("pedestrian/2/5~9", 3, "run") == "pedestrian/2/run/3~9"
+    assert assets.at_rest("pedestrian/2/run/3~9") == "pedestrian/2~9"
+    assert assets.at_phase("bicycle/1", 2) == "bicycle/1/2"
+    assert assets.cycle("pedestrian/0/run/3") == assets.stride(0, "run") == pytest.approx(1.2 * 1.76)
+    assert assets.cycle("pedestrian/0~4") == assets.stride(0, seed=4) != assets.stride(0)
+    assert assets.cycle("car/0") == 0
+
+
+def test_a_mix_of_traffic_spreads_each_share_over_its_variants():
+    made, weight = fleet({"car": 3, "bus": 1, "truck": 0})
+    assert made == (*assets.keys(Kind.CAR), "bus/0", *assets.keys(Kind.TRUCK))
+    assert weight == pytest.approx([0.125] * 6 + [0.25] + [0] * 3)
+    for wrong, message in (({"cra": 1}, "mean 'car'"), ({"car": -1}, "0 or more"), ({"car": 0}, "above 0")):
+        with pytest.raises(DatmoError, match=message):
+            fleet(wrong)
+    assert fleet({"car": np.nextafter(0, 1)})[1].sum() == pytest.approx(1)
+
+
+def test_a_body_has_the_size_of_its_mesh():
+    made = body("truck/2~3")
+    assert (made.length, made.width, made.height) == assets.asset("truck/2~3").size
+    assert made.kind == Kind.TRUCK
 
 
 def test_a_box_and_a_ball_enclose_their_volumes():
