@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import Field, model_validator
 
@@ -10,14 +10,6 @@ from scenarios.spec.base import Model, Point, Positive
 
 RUNS = 2.2  # who is faster runs [m/s]
 WALKER, RUNNER = 1.4, 3.0  # [m/s]
-
-
-def _runs(said: dict[str, Any]) -> bool:
-    return said.get("behaviour") == "running-out"
-
-
-def _speed(said: dict[str, Any]) -> float:
-    return RUNNER if said.get("running") else WALKER
 
 
 class Trigger(Model):
@@ -39,15 +31,25 @@ class Pedestrian(Model):
     )
     start: Point = Field(description="[m, world]")
     goal: Point = Field(description="[m, world]")
-    running: bool = Field(default_factory=_runs, description="at least 2.2 m/s; who runs out does")
-    speed: float = Field(default_factory=_speed, gt=0, le=7, description="[m/s]")
+    speed: float | None = Field(None, gt=0, le=7, description="[m/s]; null: 1.4, and 3 for those who run")
     begin: float = Field(0.0, ge=0, description="waits at the start until then [s]")
     trigger: Trigger | None = Field(None, description="and then until a vehicle comes near")
+    running: bool = Field(False, description="faster than 2.2 m/s; who runs out always runs")
     group: int = Field(1, ge=1, le=12, description="people who walk together")
     age: Literal["adult", "child", "any"] = Field("any", description="of the meshes to choose from")
 
     @model_validator(mode="after")
     def _fast_enough(self) -> Pedestrian:
-        if self.running and self.speed < RUNS:
+        if self.runs and self.pace < RUNS:
             raise ValueError(f"speed {self.speed} m/s is walking; people run above {RUNS} m/s; raise it")
         return self
+
+    @property
+    def runs(self) -> bool:
+        """Whether they run."""
+        return self.running or self.behaviour == "running-out"
+
+    @property
+    def pace(self) -> float:
+        """Desired speed [m/s]."""
+        return self.speed if self.speed is not None else RUNNER if self.runs else WALKER

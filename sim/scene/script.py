@@ -2,18 +2,40 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from datmo.arrays import F64
+from datmo.errors import ScenarioError
+from datmo.messages import Kind
 from scenarios import spec
+from sim.scene.assets import keys
 from sim.scene.autopilot import STEP, Claim
 from sim.scene.curve import hermite
-from sim.scene.vehicles import Body, State
+from sim.scene.vehicles import Body, State, body
+from sim.scene.walkers import gait
 
 STILL = 0.05  # below this speed [m/s] the heading is held
 FINE = 0.02  # spacing of the table of headings [s]
 NOTICE = 4.0  # others keep off the way of the next seconds [s]
+
+
+def looks_of(actor: spec.Actor) -> Body:
+    """The body of a scripted actor.
+
+    Raises:
+        ScenarioError: there is no such variant of its kind.
+    """
+    child = actor.kind == "child"
+    known = gait.looks_of("child") if child else keys(Kind[actor.kind.upper()])
+    if actor.variant >= len(known):
+        raise ScenarioError(
+            f"actor {actor.name!r}: variant = {actor.variant}; there are {len(known)} of kind {actor.kind}, "
+            f"counted from 0; choose one up to {len(known) - 1}"
+        )
+    return body(known[actor.variant])
 
 
 class Script:
@@ -24,11 +46,15 @@ class Script:
     actor goes on with the speed it has there. The heading follows the motion; while the actor
     stands it is held.
 
+    With a trigger it stands at its first way-point until the ego comes near (`watch`), and its
+    times count from there. A person shows the phase of its gait that its way so far comes to.
+
     Args:
         actor: the actor of the scenario.
     """
 
     def __init__(self, actor: spec.Actor) -> None:
+        self._cue, self._began = actor.trigger, 0.0 if actor.trigger is None else np.inf
         self._times = np.array([p.t for p in actor.path])
         self._xy = np.array([(p.x, p.y) for p in actor.path])
         self._fixed = np.deg2rad(actor.yaw_deg or 0.0)
@@ -36,6 +62,9 @@ class Script:
         if len(actor.path) > 1:
             self._rates = PchipInterpolator(self._times, self._xy).derivative()(self._times)
         self._table, self._headings = self._heading_table()
+        speed = np.hypot(*self.velocity(self._table).T)
+        mean = (speed[1:] + speed[:-1]) / 2
+        self._arcs = np.concatenate([[0.0], np.cumsum(mean * np.diff(self._table))])
 
     @property
     def parked(self) -> bool:
@@ -56,19 +85,45 @@ class Script:
         """Headings (m,) [rad, world], unwrapped."""
         return np.asarray(np.interp(np.asarray(times, float), self._table, self._headings))
 
+    def watch(self, ego: F64, time: float) -> None:
+        """Begin at `time` [s since the first scan] if the ego at (2,) [m, world] is what it waits for."""
+        if self._cue and self._began == np.inf and np.hypot(*(ego - self._xy[0])) < self._cue.distance:
+            self._began = time - float(self._times[0])
+
+    def walked(self, times: F64) -> F64:
+        """Ways (m,) from the first way-point on [m], negative before it."""
+        t = np.asarray(times, float)
+        ends = self._table[[0, -1]]
+        before, after = np.hypot(*self.velocity(ends).T)
+        beyond = np.minimum(t - ends[0], 0.0) * before + np.maximum(t - ends[1], 0.0) * after
+        return np.asarray(np.interp(t, self._table, self._arcs) + beyond)
+
     def state(self, name: int, looks: Body, time: float) -> State:
         """Where the actor is at `time` [s since the first scan]."""
-        t = np.array([time])
+        if self._waits:
+            return State(name, looks, self._xy[0], float(self._headings[0]), np.zeros(2))
+        t = np.array([time - self._began])
         rate = float((self.yaw(t + FINE) - self.yaw(t - FINE))[0] / (2 * FINE))
-        return State(name, looks, self.position(t)[0], float(self.yaw(t)[0]), self.velocity(t)[0], rate)
+        velocity = self.velocity(t)[0]
+        if looks.kind == Kind.PEDESTRIAN:
+            speed = float(np.hypot(velocity[0], velocity[1]))
+            cycle = gait.cycles(looks.asset, float(self.walked(t)[0]))
+            looks = replace(looks, asset=gait.key(looks.asset, cycle, speed))
+        return State(name, looks, self.position(t)[0], float(self.yaw(t)[0]), velocity, rate)
 
     def claim(self, looks: Body, time: float) -> Claim:
         """The ground it stands on and the ground it will drive over in the next seconds."""
-        times = np.array([time]) if self.parked else np.linspace(time, time + NOTICE, 17)
+        now = self._times[0] if self._waits else time - self._began
+        still = self.parked or self._waits
+        times = np.array([now]) if still else np.linspace(now, now + NOTICE, 17)
         along = np.arange(-looks.length / 2, looks.length / 2 + STEP, STEP)
         yaw = self.yaw(times)[:, None, None]
         body = along[:, None] * np.concatenate([np.cos(yaw), np.sin(yaw)], -1)
         return Claim((self.position(times)[:, None] + body).reshape(-1, 2), looks.width / 2)
+
+    @property
+    def _waits(self) -> bool:
+        return self._began == np.inf
 
     def _heading_table(self) -> tuple[F64, F64]:
         if self.parked:

@@ -13,6 +13,7 @@ from datmo.geometry import corners_bev, overlap_bev
 from datmo.messages import Kind
 from scenarios.spec import Scenario
 from sim.scan.units import unit
+from sim.scene import clearance
 from sim.scene.contact import stand
 from sim.scene.curve import hermite
 from sim.scene.flow import Traffic
@@ -20,10 +21,11 @@ from sim.scene.motion import Poses, edges
 from sim.scene.pedestrians import Crowd
 from sim.scene.roads import Road
 from sim.scene.scenery.around import around as surroundings
-from sim.scene.script import Script
+from sim.scene.script import Script, looks_of
 from sim.scene.terrain import Terrain, build_terrain
 from sim.scene.traffic import action_space
-from sim.scene.vehicles import State, body
+from sim.scene.vehicles import State
+from sim.scene.walkers.boxes import join, of_parked, of_things
 
 FIRST_SCRIPT = 1
 PHYSICS = 20.0
@@ -95,6 +97,8 @@ class World:
         self.roads = clip(self._traffic.roads, area)
         self.terrain: Terrain = build_terrain(scenario.terrain, self.roads, area, ground)
         self.things, self.parked = surroundings(scenario, self.roads, self.terrain, seed)
+        self._obstacles = join([of_things(self.things), of_parked(self.parked)])
+        clearance.check(scenario, self._scripted(0.0), self._crowd.parties)
 
     @staticmethod
     def actions(scenario: Scenario) -> Space[Any]:
@@ -110,6 +114,7 @@ class World:
             self._play()
         self.crashed = False
         poses = self.advance()
+        clearance.check_ego(self.scenario, self._traffic.ego_state(), self._scripted(0.0))
         self.crashed = False
         return poses
 
@@ -153,7 +158,7 @@ class World:
         scenario = self.scenario
         self._traffic = Traffic(scenario, self._traffic_seed)
         self._tick = -(self._warm_up + 1) * self._steps
-        self._scripts = [(Script(a), body(f"{a.kind}/{a.variant}")) for a in scenario.actors]
+        self._scripts = [(Script(a), looks_of(a)) for a in scenario.actors]
         self._crowd = Crowd(scenario.pedestrians, self._traffic.roads, self._walker_seeds, self.time)
         self._crowd.place(self._traffic.way)
         self._claim_scripts()
@@ -167,7 +172,7 @@ class World:
         dt = 1.0 / (self._steps * self.scenario.rate)
         for _ in range(self._steps):
             self._claim_scripts()
-            self._crowd.step(dt, self._traffic.way, self._others())
+            self._crowd.step(dt, self._traffic.way, self._others(), self._obstacles)
             self._traffic.step(dt)
             self._tick += 1
             knots.append(self._states())
@@ -181,9 +186,13 @@ class World:
 
     def _others(self) -> list[State]:
         """Everyone but the walkers: the ego, scripts, traffic."""
-        scripted = [s.state(FIRST_SCRIPT + i, looks, self.time) for i, (s, looks) in enumerate(self._scripts)]
-        return [self._traffic.ego_state(), *scripted, *self._traffic.states()]
+        return [self._traffic.ego_state(), *self._scripted(self.time), *self._traffic.states()]
+
+    def _scripted(self, time: float) -> list[State]:
+        return [s.state(FIRST_SCRIPT + i, looks, time) for i, (s, looks) in enumerate(self._scripts)]
 
     def _claim_scripts(self) -> None:
+        ego = self._traffic.ego_state().xy
         for i, (script, looks) in enumerate(self._scripts):
+            script.watch(ego, self.time)
             self._traffic.way.place(FIRST_SCRIPT + i, script.claim(looks, self.time))

@@ -8,7 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from datmo.arrays import F64, Bool
-from sim.scene.vehicles import State
+from scenarios import spec
+from sim.scene.scenery.kinds import sort
+from sim.scene.scenery.parking import Parked
+from sim.scene.scenery.place import size_of
+from sim.scene.vehicles import State, body
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,4 +77,26 @@ def of_states(states: Sequence[State]) -> Boxes:
         np.array([(s.body.length / 2, s.body.width / 2) for s in states]).reshape(-1, 2),
         np.array([s.yaw for s in states], float),
         np.array([s.velocity for s in states]).reshape(-1, 2),
+    )
+
+
+def of_things(things: Sequence[spec.Thing]) -> Boxes:
+    """What of things meets the ground: of a tree, its trunk."""
+    foot = [(size_of(t)[0] * sort(t.kind).foot, size_of(t)[1] * sort(t.kind).foot) for t in things]
+    return Boxes(
+        np.array([t.at for t in things], float).reshape(-1, 2),
+        np.array(foot, float).reshape(-1, 2) / 2,
+        np.radians(np.array([t.yaw_deg for t in things], float)),
+        np.zeros((len(things), 2)),
+    )
+
+
+def of_parked(parked: Sequence[Parked]) -> Boxes:
+    """Vehicles that stand beside the road."""
+    size = [(body(p.asset).length / 2, body(p.asset).width / 2) for p in parked]
+    return Boxes(
+        np.array([p.xy for p in parked], float).reshape(-1, 2),
+        np.array(size, float).reshape(-1, 2),
+        np.array([p.yaw for p in parked], float),
+        np.zeros((len(parked), 2)),
     )

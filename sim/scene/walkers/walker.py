@@ -39,7 +39,7 @@ class Walker:
         looks = gait.looks_of(walk.age)
         self.name, self.body = name, body(looks[int(rng.integers(len(looks)))])
         if pace is None:
-            self.pace = walk.speed * float(np.clip(1 + PACE * rng.normal(), 0.7, 1.3))
+            self.pace = walk.pace * float(np.clip(1 + PACE * rng.normal(), 0.7, 1.3))
         else:
             self.pace = pace * float(np.clip(1 + ALIKE * rng.normal(), 0.9, 1.1))
         self.spread = float(np.clip(SPREAD * rng.normal(), -0.6, 0.6))

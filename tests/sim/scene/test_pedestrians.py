@@ -188,7 +188,7 @@ def test_who_runs_out_starts_at_the_trigger_runs_and_stays() -> None:
     assert top > 2.5
     assert people.walkers[0].xy[1] == pytest.approx(6.0, abs=0.1)
     assert play(people, 10.0)[-1, 0, 1] == pytest.approx(6.0, abs=0.1)
-    assert runner.running
+    assert runner.runs
 
 
 def test_adding_a_pedestrian_changes_nobody_elses_luck() -> None:

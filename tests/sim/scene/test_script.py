@@ -1,11 +1,15 @@
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
+from datmo.errors import ScenarioError
 from datmo.messages import Kind
 from scenarios.spec import Actor
-from sim.scene.script import Script
+from sim.scene.assets import asset, stride
+from sim.scene.script import Script, looks_of
 from sim.scene.vehicles import Body
 
 CAR = Body("car/0", Kind.CAR, 4.0, 2.0)
@@ -61,3 +65,47 @@ def test_it_claims_the_way_of_the_next_seconds() -> None:
     assert points[:, 0].max() == pytest.approx(25.0 + 2.0, abs=0.5)
     parked = Script(actor((0.0, 1.0, 1.0), yaw=0.0)).claim(CAR, 0.0)
     assert np.ptp(parked.points[:, 0]) == pytest.approx(4.0, abs=0.5)
+
+
+def walker(*path: tuple[float, float, float], **more: object) -> Actor:
+    points = tuple({"t": t, "x": x, "y": y} for t, x, y in path)
+    return Actor.model_validate({"name": "w", "kind": "pedestrian", "path": points} | more)
+
+
+def test_a_scripted_person_strides_by_the_way_walked() -> None:
+    one = walker((0.0, 0.0, 0.0), (10.0, 0.0, 14.0), (12.0, 0.0, 14.0))
+    script, looks = Script(one), looks_of(one)
+    first = script.velocity(np.array([0.0]))[0, 1]
+    ways = script.walked(np.array([-1.0, 0.0, 10.0, 11.0]))
+    np.testing.assert_allclose(ways, [-first, 0, 14, 14], atol=0.01)
+    assert script.walked(np.array([10.0]))[0] == pytest.approx(14.0, abs=0.01)
+    phases = [script.state(1, looks, t).body.asset for t in np.arange(2.0, 6.0, 0.02)]
+    changes = sum(a != b for a, b in pairwise(phases))
+    way = float(np.diff(script.walked(np.array([2.0, 5.98])))[0])
+    assert changes == pytest.approx(16 * way / stride(0), abs=1.1)
+    assert script.state(1, looks, 11.0).body.asset == "pedestrian/0"
+
+
+def test_a_child_is_chosen_among_children_and_wrong_variants_are_told() -> None:
+    child = looks_of(
+        Actor.model_validate({"name": "c", "kind": "child", "path": ({"t": 0, "x": 0, "y": 0},)})
+    )
+    assert asset(child.asset).size[2] < 1.5
+    with pytest.raises(ScenarioError, match="'w': variant = 99; there are"):
+        looks_of(walker((0.0, 0.0, 0.0), variant=99))
+
+
+def test_a_trigger_starts_the_path_when_the_ego_is_near() -> None:
+    one = walker((-2.0, 5.0, 0.0), (0.0, 5.0, 4.0), trigger={"distance": 10.0})
+    script, looks = Script(one), looks_of(one)
+    script.watch(np.array([-20.0, 0.0]), 3.0)
+    before = script.state(1, looks, 3.5)
+    np.testing.assert_array_equal(before.velocity, 0)
+    np.testing.assert_allclose(before.xy, [5, 0])
+    assert np.ptp(script.claim(looks, 3.5).points[:, 1]) < 2
+    script.watch(np.array([-4.0, 0.0]), 4.0)
+    script.watch(np.array([0.0, 0.0]), 4.5)
+    np.testing.assert_allclose(script.state(1, looks, 6.0).xy, [5, 4], atol=1e-9)
+    assert script.state(1, looks, 5.0).yaw == pytest.approx(np.pi / 2)
+    with pytest.raises(ValueError, match="two way-points"):
+        walker((0.0, 5.0, 0.0), trigger={"distance": 10.0})
