@@ -170,15 +170,14 @@ def varied(car: Car, variety: Variety, widest: float = np.inf) -> Car:
     front, rear = b.axles[0], b.axles[-1]
     middle = (front + rear) / 2
     old = np.array([0.0, front, middle, rear, b.length])
-    base = variety.about(rear - front, 0.04)
-    new = np.cumsum(
-        [0.0, variety.about(front, 0.05), base / 2, base / 2, variety.about(b.length - rear, 0.06)]
-    )
-    new[2] = variety.about(1.0, 0.03) * (new[2] - new[1]) + new[1]
+    overhang = variety.about(front, 0.05) - front, variety.about(b.length - rear, 0.06) - (b.length - rear)
+    half = (variety.about(rear - front, 0.04) - (rear - front)) / 2
+    grown = np.cumsum([0.0, overhang[0], half, half, overhang[1]])
+    grown[2] += variety.about(middle, 0.015) - middle  # the bonnet against the cabin
     tall = variety.about(1.0, 0.03)
 
     def along(s: float) -> float:
-        return s if np.array_equal(new, old) else float(np.interp(s, old, new))
+        return s + float(np.interp(s, old, grown))
 
     def spans(given: Spans) -> Spans:
         return tuple((along(a), along(c)) for a, c in given)

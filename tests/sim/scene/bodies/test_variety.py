@@ -17,11 +17,11 @@ from sim.scene.bodies.variety import SEEDS, Look, Variety, parse
 LIMITS = {  # EU 96/53/EC for lorries and buses; segments A to F and large vans for the rest [m]
     Kind.CAR: ((3.3, 5.7), (1.55, 2.0), (1.35, 1.95)),
     Kind.VAN: ((4.5, 7.0), (1.8, 2.1), (1.8, 2.9)),
-    Kind.TRUCK: ((7.0, 16.5), (2.4, 2.551), (3.1, 4.001)),
+    Kind.TRUCK: ((7.0, 16.501), (2.4, 2.551), (3.1, 4.001)),
     Kind.BUS: ((11.0, 13.5), (2.4, 2.551), (2.9, 3.4)),
     Kind.MOTORCYCLE: ((1.9, 2.3), (0.6, 1.0), (1.4, 1.9)),
     Kind.BICYCLE: ((1.5, 2.0), (0.4, 0.9), (1.5, 2.0)),
-    Kind.PEDESTRIAN: ((0.2, 1.3), (0.3, 0.8), (1.0, 2.1)),
+    Kind.PEDESTRIAN: ((0.15, 1.3), (0.3, 0.8), (1.0, 2.1)),
 }
 
 
