@@ -13,6 +13,7 @@ from datmo.errors import DatmoError
 from eval.commands.benchmark import benchmark
 from eval.commands.catalog import catalog
 from eval.commands.check import check
+from eval.commands.compare import compare
 from eval.commands.detect import detect
 from eval.commands.digest import digest
 from eval.commands.generate import generate
@@ -34,13 +35,14 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
-COMMANDS: dict[str, Callable[..., None]] = {
+COMMANDS: dict[str, Callable[..., int | None]] = {
     "list": catalog,
     "run": run,
     "test": check,
     "sweep": sweep,
     "generate": generate,
     "digest": digest,
+    "compare": compare,
     "segment": segment,
     "detect": detect,
     "view": view,

@@ -11,17 +11,21 @@ from sim.scan.pattern import Pattern
 
 KITTI = (
     (-180.0, -18.4),
-    (-161.0, -18.8),
-    (-156.0, -22.5),
+    (-165.0, -18.6),
+    (-164.5, -12.9),
+    (-157.5, -12.9),
+    (-157.0, -22.0),
     (-147.0, -25.0),
     (-138.0, -25.0),
     (-134.0, -21.0),
     (-122.0, -21.0),
     (-118.0, -26.0),
-    (-75.0, -26.0),
-    (-74.0, -16.5),
-    (-63.0, -16.5),
-    (-62.0, -26.0),
+    (-79.0, -26.0),
+    (-78.0, -18.0),
+    (-72.0, -15.5),
+    (-67.0, -15.5),
+    (-61.0, -18.0),
+    (-60.0, -26.0),
     (-31.0, -26.0),
     (-18.0, -23.0),
     (-11.0, -21.4),
@@ -33,12 +37,15 @@ KITTI = (
     (134.0, -21.4),
     (138.0, -25.0),
     (147.0, -25.0),
-    (156.0, -22.5),
-    (161.0, -18.8),
+    (157.0, -22.0),
+    (157.5, -12.9),
+    (164.5, -12.9),
+    (165.0, -18.6),
     (180.0, -18.4),
 )
 """Outline of the vehicle as the sensor on its roof sees it: azimuth, elevation [deg]. From rear to
-rear: tail and roof, a corner of the rack, a mast, the bonnet's side, front, and back."""
+rear: tail and roof, posts of the rack, a mast, the bonnet, and back. What five of its sweeps, of three
+drives, have in common."""
 
 
 def own_body(pattern: Pattern, outline: bool | str | Sequence[tuple[float, float]] = True) -> Bool:

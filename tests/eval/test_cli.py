@@ -12,7 +12,7 @@ from eval.cli import app, call, main
 from scenarios.load import dump
 from scenarios.spec import Scenario
 
-COMMANDS = ("list", "run", "test", "sweep", "generate", "digest", "segment", "detect", "view")
+COMMANDS = ("list", "run", "test", "sweep", "generate", "digest", "compare", "segment", "detect", "view")
 
 
 @pytest.fixture
