@@ -18,7 +18,7 @@ from functools import cache
 
 import numpy as np
 
-from datmo.arrays import F32, I32
+from datmo.arrays import F32, F64, I32
 from datmo.errors import SimulationError, nearest
 from datmo.messages import Kind
 from sim.scene.bodies.families import FAMILIES, WALK, named
@@ -132,33 +132,34 @@ def _forms(look: Look) -> Mapping[Look, Asset]:
     give up that every return lies within the box.
     """
     family = FAMILIES[look.name]
-    shells = {pose: family.make(pose, Variety(pose)) for pose in family.poses(look)}
-    used = [shell.vertices[shell.triangles.ravel()] for shell in shells.values()]
-    low = np.min([points.min(0) for points in used], 0)
-    high = np.max([points.max(0) for points in used], 0)
+    shells = {pose: _used(family.make(pose, Variety(pose))) for pose in family.poses(look)}
+    low, high = _bounds([shell.vertices for shell in shells.values()])
     middle = np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])
     placed = {pose: shell.placed(-middle) for pose, shell in shells.items()}
-    size = _bounds(list(placed.values()))
-    return {pose: _asset(pose.key, family.kind, shell, size) for pose, shell in placed.items()}
+    low, high = _bounds([shell.vertices.astype(np.float32) for shell in placed.values()])
+    length, width, height = (high - low).tolist()
+    return {pose: _asset(pose.key, family.kind, s, (length, width, height)) for pose, s in placed.items()}
 
 
-def _bounds(shells: Sequence[Shell]) -> tuple[float, float, float]:
-    """Length, width, height of all their vertices in single precision [m]."""
-    used = [shell.vertices.astype(np.float32)[shell.triangles.ravel()] for shell in shells]
-    size = np.max([points.max(0) for points in used], 0) - np.min([points.min(0) for points in used], 0)
-    return float(size[0]), float(size[1]), float(size[2])
+def _bounds(points: Sequence[F32 | F64]) -> tuple[F64, F64]:
+    """Lowest and highest coordinates of all points, (3,) each."""
+    low, high = np.min([p.min(0) for p in points], 0), np.max([p.max(0) for p in points], 0)
+    return low, high
+
+
+def _used(shell: Shell) -> Shell:
+    """The shell without vertices that no triangle has."""
+    seen = np.zeros(len(shell.vertices), bool)
+    seen[shell.triangles.ravel()] = True
+    return Shell(shell.vertices[seen], (np.cumsum(seen) - 1)[shell.triangles], shell.reflectivity)
 
 
 def _asset(key: str, kind: Kind, shell: Shell, size: tuple[float, float, float]) -> Asset:
-    used, triangles = np.unique(shell.triangles, return_inverse=True)
-    arrays = (
-        np.ascontiguousarray(shell.vertices[used], np.float32),
-        np.ascontiguousarray(triangles.reshape(-1, 3), np.int32),
-        np.ascontiguousarray(shell.reflectivity, np.float32),
-    )
-    for array in arrays:
+    vertices, triangles = shell.vertices.astype(np.float32), shell.triangles.astype(np.int32)
+    reflectivity = shell.reflectivity.astype(np.float32)
+    for array in (vertices, triangles, reflectivity):
         array.flags.writeable = False  # assets are shared
-    return Asset(key, kind, arrays[0], arrays[1], size, arrays[2])
+    return Asset(key, kind, vertices, triangles, size, reflectivity)
 
 
 @dataclass(frozen=True, eq=False)

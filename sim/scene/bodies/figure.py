@@ -7,6 +7,7 @@ of Human Movement, fig. 4.1). Frame: x ahead, y left, z up, the hip joints at he
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -121,6 +122,7 @@ def arm_through(p: Person, shoulder: F64, elbow: F64, wrist: F64, tip: F64) -> S
     )
 
 
+@lru_cache(maxsize=64)
 def trunk(p: Person) -> Shell:
     """Hips to shoulders as a loft of ellipses (depth, width), and what is carried on the back."""
     h, g = p.scale, p.scale * p.girth
@@ -144,6 +146,7 @@ def trunk(p: Person) -> Shell:
     return join(parts)
 
 
+@lru_cache(maxsize=64)
 def head(p: Person) -> Shell:
     """Neck, face and hair."""
     h, g, k = p.scale, p.scale * p.girth, p.scale * p.head

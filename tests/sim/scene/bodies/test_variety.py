@@ -21,7 +21,7 @@ LIMITS = {  # EU 96/53/EC for lorries and buses; segments A to F and large vans 
     Kind.BUS: ((11.0, 13.5), (2.4, 2.551), (2.9, 3.4)),
     Kind.MOTORCYCLE: ((1.9, 2.3), (0.6, 1.0), (1.4, 1.9)),
     Kind.BICYCLE: ((1.5, 2.0), (0.4, 0.9), (1.5, 2.0)),
-    Kind.PEDESTRIAN: ((0.15, 1.3), (0.3, 0.8), (1.0, 2.1)),
+    Kind.PEDESTRIAN: ((0.15, 1.3), (0.25, 0.8), (1.0, 2.1)),
 }
 
 
