@@ -16,6 +16,7 @@ from eval.commands.check import check
 from eval.commands.compare import compare
 from eval.commands.detect import detect
 from eval.commands.digest import digest
+from eval.commands.gallery import gallery
 from eval.commands.generate import generate
 from eval.commands.run import run
 from eval.commands.segment import segment
@@ -46,6 +47,7 @@ COMMANDS: dict[str, Callable[..., int | None]] = {
     "segment": segment,
     "detect": detect,
     "view": view,
+    "gallery": gallery,
 }
 for name, command in COMMANDS.items():
     app.command(name)(command)

@@ -94,8 +94,8 @@ COUNTRY_ROAD = {
 FOREST = {
     "rows": (Row(kind="grass", offset=(0.6, 2.0), every=3.0, jitter=1.0, share=0.6),),
     "strewn": (
-        Strewn(kind="conifer", density=90, clear=4.0, reach=45.0),
-        Strewn(kind="tree", density=60, clear=4.0, reach=45.0),
+        Strewn(kind="conifer", density=120, clear=4.0, reach=45.0),
+        Strewn(kind="tree", density=75, clear=4.0, reach=45.0),
         Strewn(kind="bush", density=80, clear=2.0, reach=30.0),
     ),
 }

@@ -12,7 +12,19 @@ from eval.cli import app, call, main
 from scenarios.load import dump
 from scenarios.spec import Scenario
 
-COMMANDS = ("list", "run", "test", "sweep", "generate", "digest", "compare", "segment", "detect", "view")
+COMMANDS = (
+    "list",
+    "run",
+    "test",
+    "sweep",
+    "generate",
+    "digest",
+    "compare",
+    "segment",
+    "detect",
+    "view",
+    "gallery",
+)
 
 
 @pytest.fixture

@@ -65,8 +65,8 @@ def rail(size: Size) -> Form:
     length, width, height = size
     x = np.linspace(-length / 2, length / 2, max(int(np.ceil(length / PANEL)), 1) + 1)
     beam = extruded(BEAM + np.array([width / 2, height - BEAM[-1, 1]]), x)
-    behind = width / 2 - 0.083
-    posts = _posts(length, width / 2 + behind, height - 0.03, m.ZINC, POSTS, (behind - width / 2) / 2)
+    deep = width + BEAM[:, 0].min()  # what is left for the posts behind it
+    posts = _posts(length, deep, height - 0.03, m.ZINC, POSTS, (deep - width) / 2)
     return join([posts, loose(beam, Kind.WALL, m.ZINC, "bend")])
 
 

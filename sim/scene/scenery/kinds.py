@@ -111,8 +111,8 @@ LINES = {
     "rail": Sort(
         _plain(barriers.rail),
         Kind.WALL,
-        (8.0, 0.28, 0.7),
-        (16.0, 0.32, 0.8),
+        (8.0, 0.19, 0.7),
+        (16.0, 0.23, 0.8),
         "AASHTO M 180 W-beam; its upper edge at 0.75 m (RPS 2009)",
         line=True,
     ),

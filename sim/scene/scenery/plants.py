@@ -23,7 +23,7 @@ def tree(size: Size, seed: int) -> Form:
     """A broad-leaved tree: a trunk that parts into boughs under a crown of clumped leaves."""
     rng = np.random.default_rng(seed)
     length, width, height = size
-    base = height * rng.uniform(0.24, 0.32)
+    base = height * rng.uniform(0.18, 0.3)
     crown = np.array([length, width, height - base]) / 2
     middle = np.array([0.0, 0.0, (height + base) / 2])
     count, side = sprays(TREE_DENSITY * 4 / 3 * np.pi * float(np.prod(crown)), SPRAY, MOST)

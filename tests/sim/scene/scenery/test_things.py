@@ -120,11 +120,11 @@ def test_a_crown_lets_a_share_of_the_rays_pass():
 
 
 @pytest.mark.parametrize(
-    ("kind", "level", "low", "high"),
-    [("conifer", 0.35, 0.005, 0.3), ("bush", 0.5, 0.02, 0.35), ("grass", 0.4, 0.05, 0.6)],
+    ("kind", "level", "spread", "low", "high"),
+    [("conifer", 0.35, 0.8, 0.02, 0.3), ("bush", 0.5, 0.1, 0.02, 0.35), ("grass", 0.4, 0.1, 0.05, 0.6)],
 )
-def test_other_plants_are_porous_too(kind, level, low, high):
-    shares = [passed(kind, seed, size := drawn(kind, seed), level * size[2], 0.1) for seed in range(6)]
+def test_other_plants_are_porous_too(kind, level, spread, low, high):
+    shares = [passed(kind, seed, size := drawn(kind, seed), level * size[2], spread) for seed in range(6)]
     assert all(low <= share <= high for share in shares), shares
 
 
