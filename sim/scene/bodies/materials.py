@@ -1,14 +1,19 @@
 """Diffuse reflectivity of materials at 905 nm, 0..1, as a lidar sees them.
 
 Orders of magnitude, after laser scanners' data sheets and near-infrared reflectance tables: paints
-scatter 0.2-0.6, rubber 0.05-0.1, cloth 0.2-0.6 whatever its colour; window glass returns next to
-nothing; number plates and lamps are retro-reflectors.
+scatter 0.2-0.6, rubber 0.05-0.1, cloth 0.2-0.6 whatever its colour; number plates and lamps are
+retro-reflectors.
+
+Window glass throws light on or away and scatters next to none back. Its value is the one that makes the
+simulator's link budget (half the returns lost where reflectivity x cosine / range² is 1.2e-6 / m²) lose as
+many as a real HDL-64E: of the rays at the windows of two cars at 7-10 m in KITTI's odometry sequence 00
+about four in five do not come back, and those that do mostly come from the pillars and seats.
 """
 
 from __future__ import annotations
 
 PAINT = (0.55, 0.35, 0.2, 0.45)  # white, silver, dark, bright colour
-GLASS = 0.0002
+GLASS = 8e-5
 TYRE = 0.06
 RIM = 0.45
 UNDERBODY = 0.1

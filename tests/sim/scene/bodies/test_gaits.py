@@ -6,6 +6,7 @@ import pytest
 from sim.scene import assets
 from sim.scene.bodies import gait, person
 from sim.scene.bodies.figure import SHANK, THIGH, ahead
+from sim.scene.bodies.variety import Look, Variety
 
 PHASES = assets.GAIT_PHASES
 
@@ -77,8 +78,8 @@ def test_children_have_larger_heads_and_the_medians_of_growth_charts():
     """CDC growth charts 2000: 5th to 95th percentiles 1.06-1.25 m at six, 1.28-1.50 m at ten."""
     for variant, low, high in ((4, 1.06, 1.25), (5, 1.28, 1.50)):
         for seed in range(0, 32, 5):
-            key = assets.Look("pedestrian", variant, seed=seed)
-            p = person.varied(variant, assets.Variety(key))
+            key = Look("pedestrian", variant, seed=seed)
+            p = person.varied(variant, Variety(key))
             assert low < p.height < high
         assert person.PERSONS[variant].head > 1.1
 

@@ -6,6 +6,7 @@ import pytest
 from sim.scene import assets
 from sim.scene.bodies import bicycle, rider
 from sim.scene.bodies.figure import FOREARM, SHANK, THIGH, UPPER_ARM
+from sim.scene.bodies.variety import Look, Variety
 
 LIMITS = {  # KITTI's cyclists and two-wheelers' data sheets: length, width, height [m]
     "bicycle/0": ((1.6, 1.95), (0.5, 0.88), (1.6, 1.9)),
@@ -44,8 +45,8 @@ def test_pedals_turn_once_in_a_cycle_and_no_foot_touches_the_ground(seed):
 @pytest.mark.parametrize("seed", [0, 3, 17, 30])
 def test_riders_reach_their_pedals_and_grips(variant, seed):
     """No limb is longer than its segments, so that none was cut short of what it holds."""
-    look = assets.Look("bicycle", variant, seed=seed)
-    b = bicycle.varied(variant, assets.Variety(look))
+    look = Look("bicycle", variant, seed=seed)
+    b = bicycle.varied(variant, Variety(look))
     hip = bicycle._saddle(b)
     h = b.rider.scale
     for turn in np.linspace(0, 2 * np.pi, 32):
