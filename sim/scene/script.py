@@ -47,7 +47,8 @@ class Script:
     stands it is held.
 
     With a trigger it stands at its first way-point until the ego comes near (`watch`), and its
-    times count from there. A person shows the phase of its gait that its way so far comes to.
+    times count from there. Persons and
+    cyclists show the phase of their gait that the way so far comes to.
 
     Args:
         actor: the actor of the scenario.
@@ -105,10 +106,9 @@ class Script:
         t = np.array([time - self._began])
         rate = float((self.yaw(t + FINE) - self.yaw(t - FINE))[0] / (2 * FINE))
         velocity = self.velocity(t)[0]
-        if looks.kind == Kind.PEDESTRIAN:
-            speed = float(np.hypot(velocity[0], velocity[1]))
-            cycle = gait.cycles(looks.asset, float(self.walked(t)[0]))
-            looks = replace(looks, asset=gait.key(looks.asset, cycle, speed))
+        speed = float(np.hypot(velocity[0], velocity[1]))
+        cycle = gait.cycles(looks.asset, looks.kind, float(self.walked(t)[0]), speed)
+        looks = replace(looks, asset=gait.key(looks.asset, looks.kind, cycle, speed))
         return State(name, looks, self.position(t)[0], float(self.yaw(t)[0]), velocity, rate)
 
     def claim(self, looks: Body, time: float) -> Claim:

@@ -1,11 +1,13 @@
-"""Which mesh a person shows: standing, or a phase of walking or running."""
+"""Which mesh a body shows: at rest, or a phase of walking, running or pedalling."""
 
 from __future__ import annotations
+
+from functools import cache
 
 import numpy as np
 
 from datmo.messages import Kind
-from sim.scene.assets import GAIT_PHASES, asset, keys, stride
+from sim.scene import assets
 
 CHILD = 1.5  # who is smaller is a child [m]
 STAND = 0.05  # slower than this is standing [m/s]
@@ -16,22 +18,35 @@ energetically optimal gait transition speeds in human locomotion, Med. Sci. Spor
 
 def looks_of(age: str) -> tuple[str, ...]:
     """Keys of the standing meshes of an age: `adult`, `child` or `any`."""
-    everyone = keys(Kind.PEDESTRIAN)
+    everyone = assets.keys(Kind.PEDESTRIAN)
     if age == "any":
         return everyone
-    return tuple(k for k in everyone if (asset(k).size[2] < CHILD) == (age == "child"))
+    return tuple(k for k in everyone if (assets.asset(k).size[2] < CHILD) == (age == "child"))
 
 
-def variant(looks: str) -> int:
-    """The variant in the key of a standing person."""
-    return int(looks.split("/")[1])
+def cycles(looks: str, kind: Kind, distance: float, speed: float) -> float:
+    """Gait cycles that a way of `distance` [m] takes at a speed [m/s]; none for what has no gait."""
+    length = _cycle(looks, _gait(kind, speed))
+    return distance / length if length else 0.0
 
 
-def cycles(looks: str, distance: float) -> float:
-    """Gait cycles that a way of `distance` [m] takes."""
-    return distance / stride(variant(looks))
+def key(looks: str, kind: Kind, cycle: float, speed: float) -> str:
+    """The mesh of a body at a place in its gait cycle (for people, whole numbers are heel strikes)."""
+    gait = _gait(kind, speed)
+    if speed <= STAND or not _cycle(looks, gait):
+        return looks
+    return _phase(looks, int(np.floor(cycle * assets.GAIT_PHASES)) % assets.GAIT_PHASES, gait)
 
 
-def key(looks: str, cycle: float, speed: float) -> str:
-    """The mesh of a person at a place in its gait cycle (whole numbers are heel strikes)."""
-    return looks if speed <= STAND else f"{looks}/{int(np.floor(cycle * GAIT_PHASES)) % GAIT_PHASES}"
+def _gait(kind: Kind, speed: float) -> str:
+    return "run" if kind == Kind.PEDESTRIAN and speed > RUN else ""
+
+
+@cache
+def _cycle(looks: str, gait: str) -> float:
+    return assets.cycle(assets.at_phase(looks, 0, gait)) if assets.cycle(looks) else 0.0
+
+
+@cache
+def _phase(looks: str, phase: int, gait: str) -> str:
+    return assets.at_phase(looks, phase, gait)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -30,16 +31,20 @@ class Line:
     start: F64
     goal: F64
 
-    @property
+    @cached_property
     def length(self) -> float:
         """[m]."""
         return float(np.hypot(*(self.goal - self.start)))
 
+    @cached_property
+    def _unit(self) -> F64:
+        return np.asarray((self.goal - self.start) / max(self.length, 1e-9))
+
     def ahead(self, way: int) -> F64:
         """Unit vector (2,) of the way."""
-        return np.asarray((self.goal - self.start) * (way / max(self.length, 1e-9)))
+        return way * self._unit
 
-    @property
+    @cached_property
     def left(self) -> F64:
         """Unit vector (2,) to the left of the way there."""
         x, y = self.ahead(1)

@@ -9,7 +9,6 @@ import numpy as np
 from datmo.arrays import F64
 from datmo.geometry import wrap_angle
 from scenarios import spec
-from sim.scene.assets import asset
 from sim.scene.vehicles import State, body
 from sim.scene.walkers import gait
 from sim.scene.walkers.social import FASTEST
@@ -44,8 +43,7 @@ class Walker:
             self.pace = pace * float(np.clip(1 + ALIKE * rng.normal(), 0.9, 1.1))
         self.spread = float(np.clip(SPREAD * rng.normal(), -0.6, 0.6))
         self.cycle = float(rng.uniform(0, 1))
-        striding = asset(f"{self.body.asset}/0").size[0]
-        self.half = np.array([striding / 2, self.body.width / 2 + 0.02])
+        self.half = np.array([self.body.length / 2, self.body.width / 2 + 0.02])
         self.aside = self.walked = self.yaw = self.yaw_rate = 0.0
         self.xy, self.velocity = np.zeros(2), np.zeros(2)
         self.home = self.xy
@@ -66,7 +64,7 @@ class Walker:
         self.xy, self.velocity = self.xy + step, velocity
         moved = float(np.hypot(step[0], step[1]))
         self.walked += moved
-        self.cycle += gait.cycles(self.body.asset, moved)
+        self.cycle += gait.cycles(self.body.asset, self.body.kind, moved, self.speed)
         heading = np.arctan2(velocity[1], velocity[0]) if self.speed > TURN_ABOVE else facing
         change = float(np.clip(wrap_angle(heading - self.yaw), -TURNING * dt, TURNING * dt))
         self.yaw += change
@@ -74,5 +72,6 @@ class Walker:
 
     def state(self) -> State:
         """Where it is, with the mesh of this phase of its gait."""
-        looks = replace(self.body, asset=gait.key(self.body.asset, self.cycle, self.speed))
+        shown = gait.key(self.body.asset, self.body.kind, self.cycle, self.speed)
+        looks = replace(self.body, asset=shown)
         return State(self.name, looks, self.xy, self.yaw, self.velocity, self.yaw_rate)

@@ -118,6 +118,7 @@ def test_its_gait_follows_the_way_walked() -> None:
         people.step(DT, way)
         seen.append((people.walkers[0].cycle, people.states()[0].body.asset))
     phases = [int(a.split("/")[-1]) for _, a in seen if a.count("/") == 2]
+    assert not any("run" in a for _, a in seen)
     turns = sum((b - a) % 16 for a, b in pairwise(phases)) / 16
     assert turns == pytest.approx(seen[-1][0] - seen[0][0], abs=0.15)
     assert set(phases) == set(range(16))
@@ -184,6 +185,7 @@ def test_who_runs_out_starts_at_the_trigger_runs_and_stays() -> None:
         if started is None and one.speed > 0.05:
             started = float(np.hypot(x - one.xy[0], 12.0 + one.xy[1]))
         top = max(top, one.speed)
+        assert ("run" in people.states()[0].body.asset) == (one.speed > 2.2)
     assert started == pytest.approx(15.0, abs=8 * DT + 0.05)
     assert top > 2.5
     assert people.walkers[0].xy[1] == pytest.approx(6.0, abs=0.1)
