@@ -63,7 +63,7 @@ class Parking(Model):
 STREET = {
     "rows": (
         Row(kind="building", offset=(6.0, 8.0), every=19.0, jitter=1.5, share=0.85),
-        Row(kind="tree", offset=(1.4, 2.0), every=14.0, jitter=1.0, share=0.7),
+        Row(kind="tree", offset=(1.4, 2.6), every=14.0, jitter=1.0, share=0.7),
         Row(kind="lamp", offset=(0.5, 0.5), every=28.0, side="right"),
         Row(kind="sign", offset=(0.5, 0.8), every=45.0, jitter=8.0, side="right"),
         Row(kind="bin", offset=(4.0, 5.0), every=16.0, jitter=5.0, share=0.6),

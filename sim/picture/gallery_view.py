@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from datmo.arrays import F32, F64, I32, U8, Bool
+from datmo.messages import Kind
 from sim.picture.palette import KIND
 from sim.scan.embree import MISS, Mesh
 
@@ -72,8 +73,11 @@ def camera(low: F64, high: F64, shape: tuple[int, int], azimuth_deg: float, rise
 
 def colours(kind: U8, reflectivity: F32) -> F64:
     """Colours (t, 3) of triangles: their kind's, lighter where they reflect more."""
-    table = np.array([KIND.get(k, (150, 150, 160)) for k in range(256)], float)  # type: ignore[call-overload]
-    return np.asarray(table[kind] * (0.35 + 0.95 * np.sqrt(reflectivity))[:, None])
+    table = np.zeros((len(Kind), 3))
+    for code, colour in KIND.items():
+        table[code] = colour
+    bright: F64 = 0.35 + 0.95 * np.sqrt(reflectivity.astype(float))
+    return np.asarray(table[kind] * bright[:, None])
 
 
 def mesh_view(vertices: F32, triangles: I32, colour: F64, view: Camera) -> U8:
@@ -98,7 +102,7 @@ def mesh_view(vertices: F32, triangles: I32, colour: F64, view: Camera) -> U8:
     bright = AMBIENT + (1 - AMBIENT) * np.clip(np.sum(normal * light, 1), 0, 1)
     image[met] = colour[hits.triangle[met]] * bright[:, None]
     coarse = image.reshape(h, FINER, w, FINER, 3).mean((1, 3))
-    return np.clip(coarse, 0, 255).astype(np.uint8)
+    return np.asarray(np.clip(coarse, 0, 255), np.uint8)
 
 
 def splat(view: Camera, points: F64, colour: F64, background: tuple[int, int, int]) -> U8:

@@ -74,12 +74,12 @@ def hedge(size: Size, seed: int) -> Form:
     """A clipped hedge: a dense core of twigs under a skin of leaves."""
     rng = np.random.default_rng(seed)
     length, width, height = size
-    skin = min(0.3 * width, 0.2)
+    skin = min(0.3 * width, 0.3 * length, 0.2)
     core = _block((length - 2 * skin, width - 2 * skin, height - skin), -ROOT, m.LEAF)
     faces = np.array([length * height, length * height, length * width, width * height, width * height])
     n = max(round(LEAFAGE * float(faces.sum())), 12)
     face = rng.choice(5, n, p=faces / faces.sum())
-    room = np.array([length, width, height]) - 2 * SIDE / np.sqrt(3)
+    room = np.maximum(np.array([length, width, height]) - 2 * SIDE / np.sqrt(3), 0.0)
     places = rng.uniform(-0.5, 0.5, (n, 3)) * room
     into = np.minimum(rng.uniform(0, skin, n), 0.4 * room[1])
     for f, (axis, sign) in enumerate(((1, 1), (1, -1), (2, 1), (0, 1), (0, -1))):

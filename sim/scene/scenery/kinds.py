@@ -165,6 +165,7 @@ def sort(kind: str) -> Sort:
     return SORTS[kind]
 
 
+@lru_cache(maxsize=512)
 def drawn(kind: str, seed: int) -> Size:
     """A size within the limits of a kind [m]: length and width by one draw, height by another."""
     limits, rng = sort(kind), np.random.default_rng([seed, 1])

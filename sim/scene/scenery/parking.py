@@ -12,7 +12,8 @@ from datmo.messages import Kind
 from scenarios import spec
 from sim.scene.assets import asset, keys
 from sim.scene.roads import Road
-from sim.scene.scenery.plot import beyond, outline, overlap, rectangle
+from sim.scene.scenery.edges import Edges
+from sim.scene.scenery.plot import CLOSE, outline, overlap, rectangle
 from sim.scene.scenery.verge import verges
 
 Area = tuple[float, float, float, float]
@@ -54,7 +55,7 @@ def parked(
         taken: polygons (p, 2) that stay free [m, world].
     """
     rule = scenery.parking
-    found: list[Parked] = []
+    edges, found = Edges(roads), list[Parked]()
     for k, verge in enumerate(verges(roads, rule.side) if rule else ()):
         assert rule is not None
         rng = np.random.default_rng(np.random.SeedSequence(seed.entropy, spawn_key=(*seed.spawn_key, k)))
@@ -69,7 +70,7 @@ def parked(
             xy = verge.at(np.array([s]), np.array([rule.gap + width / 2 + ASKEW * length]))[0]
             one = Parked(key, kind, xy, verge.yaw(s) + float(askew[i]))
             inside = area[0] <= xy[0] <= area[2] and area[1] <= xy[1] <= area[3]
-            if inside and _free(one, roads, found) and not any(overlap(one.corners, p) for p in taken):
+            if inside and _free(one, edges, found) and not any(overlap(one.corners, p) for p in taken):
                 found.append(one)
     return tuple(found)
 
@@ -81,10 +82,11 @@ def _which(rule: spec.Parking, share: float, rng: np.random.Generator) -> tuple[
     return some[int(rng.integers(len(some)))], kind
 
 
-def _free(one: Parked, roads: Sequence[Road], others: Sequence[Parked]) -> bool:
+def _free(one: Parked, edges: Edges, others: Sequence[Parked]) -> bool:
     """Whether it stands off the roads, with room before and behind, and off the others."""
     length, width, _ = asset(one.asset).size
     long = rectangle(one.xy, one.yaw, length + 2 * CLEAR, 0.5 * width)
-    if min(beyond(roads, outline(one.corners)).min(), beyond(roads, outline(long)).min()) < 0.05:
+    points = np.concatenate([outline(one.corners), outline(long)])
+    if edges.beyond(points, CLOSE).min() < CLOSE:
         return False
     return all(np.hypot(*(one.xy - other.xy)) > length for other in others)

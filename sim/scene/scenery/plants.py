@@ -13,20 +13,22 @@ from sim.scene.scenery.leaves import clumped, in_ball, in_cone, leaves, sprays
 Size = tuple[float, float, float]
 SPRAY, MOST = 0.28, 1800
 """Side of a tree's sprays of leaves [m], and the most that a tree has."""
-TREE_DENSITY, CONIFER_DENSITY, BUSH_DENSITY = 0.7, 0.85, 2.0
+TREE_DENSITY, CONIFER_DENSITY, BUSH_DENSITY = 0.7, 1.0, 2.0
 """Leaf area in the crown's volume [m2/m3]."""
+BUSH_SPRAY, BUSH_MOST = 0.14, 600
 SPARE = 1.5  # so many places a leaf are drawn, and the thickest taken
-BLADES = 90.0  # a square metre of tall grass
+BLADES, MOST_BLADES = 90.0, 3000  # a square metre of tall grass, and in a patch
 
 
 def tree(size: Size, seed: int) -> Form:
     """A broad-leaved tree: a trunk that parts into boughs under a crown of clumped leaves."""
     rng = np.random.default_rng(seed)
     length, width, height = size
-    base = height * rng.uniform(0.18, 0.3)
+    base = height * rng.uniform(0.22, 0.31)
     crown = np.array([length, width, height - base]) / 2
     middle = np.array([0.0, 0.0, (height + base) / 2])
-    count, side = sprays(TREE_DENSITY * 4 / 3 * np.pi * float(np.prod(crown)), SPRAY, MOST)
+    spray = min(SPRAY, 0.5 * float(crown.min()))
+    count, side = sprays(TREE_DENSITY * 4 / 3 * np.pi * float(np.prod(crown)), spray, MOST)
     inner = crown - side / np.sqrt(3)
     places = clumped(in_ball(round(SPARE * count), rng) * inner + middle, count, 0.35 * length, rng)
     thick = 0.014 * height + 0.03
@@ -47,7 +49,8 @@ def conifer(size: Size, seed: int) -> Form:
     length, width, height = size
     base = height * rng.uniform(0.06, 0.14)
     volume = np.pi / 12 * length * width * (height - base)
-    count, side = sprays(CONIFER_DENSITY * volume, SPRAY, MOST)
+    spray = min(SPRAY, 0.3 * min(length, width))
+    count, side = sprays(CONIFER_DENSITY * volume, spray, MOST)
     inset = side / np.sqrt(3)
     stretch = np.array([length / 2 - inset, width / 2 - inset, height - base - 2 * inset])
     points = in_cone(round(SPARE * count), rng)
@@ -63,7 +66,8 @@ def bush(size: Size, seed: int) -> Form:
     """A shrub: leaves from the ground up, on a few stems."""
     rng = np.random.default_rng(seed)
     half = np.array(size) / 2
-    count, side = sprays(BUSH_DENSITY * 4 / 3 * np.pi * float(np.prod(half)), 0.14, 600)
+    spray = min(BUSH_SPRAY, 0.5 * float(half.min()))
+    count, side = sprays(BUSH_DENSITY * 4 / 3 * np.pi * float(np.prod(half)), spray, BUSH_MOST)
     inner = half - side / np.sqrt(3)
     points = in_ball(round(SPARE * count), rng)
     places = clumped(points * inner + np.array([0, 0, half[2]]), count, 0.5 * size[0], rng)
@@ -78,13 +82,13 @@ def grass(size: Size, seed: int) -> Form:
     """A patch of tall grass: narrow blades, each on its own ground, the tallest in the middle."""
     rng = np.random.default_rng(seed)
     length, width, height = size
-    n = max(round(BLADES * np.pi / 4 * length * width), 8)
+    n = min(max(round(BLADES * np.pi / 4 * length * width), 8), MOST_BLADES)
     r, turn, facing = np.sqrt(rng.uniform(0, 1, n)), rng.uniform(0, 2 * np.pi, n), rng.uniform(0, np.pi, n)
     tall = height * rng.uniform(0.55, 1.0, n) * (1 - 0.35 * r**2)
     tall[0] = height
     lean = 0.3 * tall
     room = np.array([length / 2, width / 2])
-    foot = np.column_stack([r * np.cos(turn), r * np.sin(turn)]) * (room - 0.3 * height - 0.03)
+    foot = np.column_stack([r * np.cos(turn), r * np.sin(turn)]) * np.maximum(room - 0.3 * height - 0.03, 0.0)
     thick = np.column_stack([np.cos(facing), np.sin(facing)]) * rng.uniform(0.012, 0.03, n)[:, None]
     bend = rng.uniform(0, 2 * np.pi, n)
     tip = foot + lean[:, None] * np.column_stack([np.cos(bend), np.sin(bend)])

@@ -9,13 +9,14 @@ import numpy as np
 from datmo.arrays import F64
 from datmo.messages import Kind
 from scenarios import spec
-from sim.scene.carriageways import offsets
-from sim.scene.roads import Road
+from sim.scene.scenery.edges import Edges
 from sim.scene.scenery.kinds import sort
 from sim.scene.scenery.place import size_of
 from sim.scene.terrain import Terrain
 
 CROWN = 0.7  # share of a crown that another thing's plot may not touch
+OVERHANG = 0.8  # crowns reach no further over a road: lanes leave vehicles some room [m]
+CLOSE = 0.05  # nothing is nearer to a road [m]
 ALONG = 1.0  # spacing of the points of an outline [m]
 SQUARE = np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]])
 
@@ -37,6 +38,11 @@ def room(thing: spec.Thing) -> F64:
     return _corners(thing, max(sort(thing.kind).foot, CROWN))
 
 
+def needed(kind: str, size: tuple[float, float, float]) -> float:
+    """How far beyond a road's edge the middle of a thing must be for its crown [m]; 0 without one."""
+    return max(max(size[:2]) / 2 - OVERHANG, 0.0) if sort(kind).foot < 1 else 0.0
+
+
 def outline(corners: F64) -> F64:
     """Points (n, 2) about `ALONG` apart on the sides of a polygon (p, 2), and its middle [m]."""
     points = [corners.mean(0)[None]]
@@ -44,18 +50,6 @@ def outline(corners: F64) -> F64:
         n = max(int(np.ceil(np.hypot(*(b - a)) / ALONG)), 1)
         points.append(a + (np.arange(n) / n)[:, None] * (b - a))
     return np.concatenate(points)
-
-
-def beyond(roads: Sequence[Road], points: F64) -> F64:
-    """Distances (n,) of points (n, 2) beyond the nearest road's edge [m], negative on one."""
-    nearest = np.full(len(points), np.inf)
-    low, high = points.min(0), points.max(0)
-    for road in roads:
-        line, far = road.centerline, road.width / 2
-        apart = np.maximum(np.maximum(line.min(0) - high, low - line.max(0)), 0.0)
-        if np.hypot(*apart) - far < nearest.max():
-            nearest = np.minimum(nearest, offsets(line, points)[:, 0] - far)
-    return nearest
 
 
 def _corners(thing: spec.Thing, share: float) -> F64:
@@ -79,12 +73,12 @@ class Plots:
     """The plots taken so far.
 
     Args:
-        roads: that nothing stands on. terrain: its field is where things may stand.
+        edges: of the roads, that nothing stands on. terrain: its field is where things may stand.
         taken: polygons (p, 2) [m, world] that are no longer free.
     """
 
-    def __init__(self, roads: Sequence[Road], terrain: Terrain, taken: Sequence[F64] = ()) -> None:
-        self._roads, self._terrain = roads, terrain
+    def __init__(self, edges: Edges, terrain: Terrain, taken: Sequence[F64] = ()) -> None:
+        self._edges, self._terrain = edges, terrain
         self._taken: list[F64] = []
         self._middle = np.empty((64, 2))
         self._radius = np.empty(64)
@@ -98,7 +92,9 @@ class Plots:
         inside = (points >= [x0, y0]).all() and (points <= [x1, y1]).all()
         if not inside or (self._terrain.kind_at(points) != Kind.FIELD).any():
             return False
-        if beyond(self._roads, points).min() < max(clear, 0.05):
+        clear, crown = max(clear, CLOSE), needed(thing.kind, size_of(thing))
+        off = self._edges.beyond(points, max(clear, crown))
+        if off.min() < clear or off[0] < crown:
             return False
         polygon = room(thing)
         if self._crowded(polygon):

@@ -10,8 +10,9 @@ from datmo.arrays import F64
 from datmo.messages import Kind
 from scenarios import spec
 from sim.scene.roads import Road
+from sim.scene.scenery.edges import Edges
 from sim.scene.scenery.kinds import SORTS, drawn
-from sim.scene.scenery.plot import Plots, beyond
+from sim.scene.scenery.plot import Plots, needed
 from sim.scene.scenery.verge import Verge, verges
 from sim.scene.terrain import Terrain
 
@@ -21,6 +22,7 @@ SHAPES = 12
 SQUARE = 100.0  # side of the squares that draw by themselves: a hectare [m]
 PAVED = 8.0  # a sidewalk is at most so wide [m]
 STEP = 0.25  # in which its back is looked for [m]
+SPARE = 0.05  # more than needed, for roads that bend [m]
 PIECE = 1  # decimals to which the length of a line's piece is rounded, so that shapes can be shared
 
 
@@ -40,7 +42,8 @@ def scatter(
         area: x_min, y_min, x_max, y_max where they may have their middle [m, world].
         taken: polygons (p, 2) that stay free, such as ways of walkers [m, world].
     """
-    plots = Plots(roads, terrain, taken)
+    edges = Edges(roads)
+    plots = Plots(edges, terrain, taken)
     things: list[spec.Thing] = []
     for i, row in enumerate(scenery.all_rows):
         for k, verge in enumerate(verges(roads, row.side)):
@@ -54,7 +57,7 @@ def scatter(
     for i, rule in enumerate(scenery.all_strewn):
         strewn = _strewn(rule, area, _child(seed, 1, i))
         things += [
-            thing for thing in strewn if _reached(rule, roads, thing) and plots.take(thing, rule.clear)
+            thing for thing in strewn if _reached(rule, edges, thing) and plots.take(thing, rule.clear)
         ]
     return tuple(things)
 
@@ -63,14 +66,14 @@ def _places(row: spec.Row, verge: Verge, terrain: Terrain, rng: np.random.Genera
     """Single things along a verge."""
     n = int(verge.length / row.every) + 1
     arc = (np.arange(n, dtype=float) + rng.uniform()) * row.every + rng.uniform(-row.jitter, row.jitter, n)
-    offset, here = rng.uniform(*row.offset, n), rng.uniform(0, 1, n) < row.share
+    offset, taken = rng.uniform(*row.offset, n), rng.uniform(0, 1, n) < row.share
     seeds = rng.integers(SHAPES, size=n)
-    on = here & (arc >= 0) & (arc <= verge.length)
-    for s, off, shape in zip(arc[on], offset[on], seeds[on], strict=True):
+    on = taken & (arc >= 0) & (arc <= verge.length)
+    free = _behind(verge, arc[on], terrain)
+    for s, off, shape in zip(arc[on], offset[on] + free, seeds[on], strict=True):
         size = row.size or drawn(row.kind, int(shape))
-        reach = SORTS[row.kind].foot * size[1] / 2
-        free = _behind(verge, np.array([s]), terrain)
-        x, y = verge.at(np.array([s]), free + off + reach)[0]
+        beside = max(off + SORTS[row.kind].foot * size[1] / 2, needed(row.kind, size) + SPARE)
+        x, y = verge.at(np.array([s]), np.array([beside]))[0]
         yield _thing(row.kind, (x, y), verge.yaw(float(s)), int(shape), row.size)
 
 
@@ -138,8 +141,10 @@ def _thing(
     )
 
 
-def _reached(rule: spec.Strewn, roads: Sequence[Road], thing: spec.Thing) -> bool:
-    return rule.reach is None or bool(beyond(roads, np.array([thing.at]))[0] <= rule.reach)
+def _reached(rule: spec.Strewn, edges: Edges, thing: spec.Thing) -> bool:
+    if rule.reach is None:
+        return True
+    return bool(edges.beyond(np.array([thing.at]), rule.reach)[0] < rule.reach)
 
 
 def _within(area: Area, thing: spec.Thing) -> bool:

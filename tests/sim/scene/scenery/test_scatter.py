@@ -15,8 +15,10 @@ from scenarios import spec
 from scenarios.spec.scenery import PRESETS
 from sim.scan.things import place
 from sim.scene.roads import Road
+from sim.scene.scenery.edges import Edges
 from sim.scene.scenery.parking import parked
-from sim.scene.scenery.plot import Plots, beyond, foot, outline, overlap, rectangle, room
+from sim.scene.scenery.place import size_of
+from sim.scene.scenery.plot import Plots, foot, outline, overlap, rectangle, room
 from sim.scene.scenery.scatter import scatter
 from sim.scene.terrain import build_terrain
 
@@ -34,6 +36,18 @@ def crossing():
 
 
 ROADS = crossing()
+
+
+def beyond(roads, points):
+    """The slow way: the least distance to any segment of any road, less half the road's width."""
+    least = np.full(len(points), np.inf)
+    for road in roads:
+        a, e = road.centerline[:-1], np.diff(road.centerline, axis=0)
+        to = points[:, None] - a
+        t = np.clip((to * e).sum(2) / (e * e).sum(1), 0, 1)
+        gap = np.sqrt(((to - t[..., None] * e) ** 2).sum(2))
+        least = np.minimum(least, gap.min(1) - road.width / 2)
+    return least
 
 
 @pytest.fixture(scope="module")
@@ -96,6 +110,30 @@ def test_what_is_taken_stays_free(field):
     kept = scatter(rows, ROADS, field, AREA, SEED, [way])
     assert any(overlap(room(t), way) for t in free)
     assert not any(overlap(room(t), way) for t in kept)
+
+
+def test_crowns_hardly_reach_over_the_road(field):
+    things = [t for name in ("street", "forest") for t in laid(name, field) if t.kind in ("tree", "conifer")]
+    assert len(things) > 50
+    for thing in things:
+        radius = max(size_of(thing)[:2]) / 2
+        assert beyond(ROADS, np.array([thing.at]))[0] >= radius - 0.8 - 1e-3
+
+
+@settings(max_examples=12, deadline=None)
+@given(st.floats(-0.06, 0.06), st.floats(-0.06, 0.06), st.floats(3, 14), st.integers(0, 99))
+def test_nothing_stands_on_any_winding_road(bend, twist, width, seed):
+    s = np.arange(-60.0, 60.5, 1.0)
+    yaw = bend * s + twist * s**2 / 40
+    road = Road(np.column_stack([np.cumsum(np.cos(yaw)), np.cumsum(np.sin(yaw))]), width)
+    low, high = road.centerline.min(0) - 15, road.centerline.max(0) + 15
+    area = (float(low[0]), float(low[1]), float(high[0]), float(high[1]))
+    ground = build_terrain(spec.Terrain(cell=1.0), [road], area, np.random.SeedSequence(1))
+    scenery = spec.Scenery(preset="country-road", parking=spec.Parking())
+    standing = parked(scenery, [road], np.random.SeedSequence(seed), area)
+    things = scatter(scenery, [road], ground, area, np.random.SeedSequence(seed))
+    for corners in [one.corners for one in standing] + [foot(thing) for thing in things]:
+        assert beyond([road], outline(corners)).min() > 0
 
 
 def test_rows_keep_their_offset_and_side(field):
@@ -170,8 +208,16 @@ def _inside(points, corners, slack=0.0):
     return inside
 
 
+@pytest.mark.parametrize("reach", [np.inf, 5.0, 0.05])
+def test_edges_are_what_every_segment_says(reach):
+    points = np.random.default_rng(2).uniform(-55, 55, (60, 2))
+    for some in (points, *np.array_split(points, 20)):
+        found = Edges(ROADS).beyond(some, reach)
+        assert found == pytest.approx(np.minimum(beyond(ROADS, some), reach), abs=1e-9)
+
+
 def test_plots_grow(field):
-    plots = Plots((), field)
+    plots = Plots(Edges(()), field)
     spots = [(float(x), float(y)) for x in range(-45, 46, 9) for y in range(-45, 46, 9)]
     clear = [plots.take(spec.Thing(kind="bollard", at=at)) for at in spots]
     again = [plots.take(spec.Thing(kind="bollard", at=at)) for at in spots]

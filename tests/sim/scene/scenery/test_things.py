@@ -7,6 +7,8 @@ from typing import get_args
 import numpy as np
 import pytest
 import trimesh
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from datmo.errors import SimulationError
 from datmo.messages import Kind
@@ -100,6 +102,22 @@ def test_seeds_give_different_shapes_of_one_size(kind):
 @pytest.mark.parametrize("kind", KINDS)
 def test_seeds_give_different_sizes(kind):
     assert len({drawn(kind, seed) for seed in range(8)}) > 4
+
+
+SIDE = st.floats(0.2, 20)
+
+
+@settings(max_examples=80, deadline=None)
+@given(st.sampled_from(KINDS), SIDE, SIDE, SIDE, st.integers(0, 9))
+def test_any_size_makes_a_sound_shape(kind, length, width, height, seed):
+    made = form(kind, (length, width, height), seed)
+    assert np.isfinite(made.vertices).all()
+    assert len(made.triangles) > 0
+    assert made.triangles.max() < len(made.vertices)
+    assert Mesh(made.vertices, made.triangles).triangles.shape == made.triangles.shape
+    if kind in ("pole", "wall", "hedge", "tree", "bush", "bollard"):
+        high = np.abs(made.vertices).max(0)
+        assert (high[:2] <= np.array([length, width]) / 2 + 0.15).all()
 
 
 def passed(kind, seed, size, level, spread):
