@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 from datmo.messages import Kind
-from sim.scene.bodies import bicycle, bus, cars, motorcycle, person
+from sim.scene.bodies import bicycle, bus, cars, person, powered
 from sim.scene.bodies import truck as trucks
 from sim.scene.bodies.gait import GAIT_PHASES, GAITS
 from sim.scene.bodies.primitives import Shell
@@ -69,8 +69,8 @@ FAMILIES = {
         ),
         Family(Kind.BUS, "bus", bus.BUS_WORDS, lambda look, luck: bus.bus(look.variant, luck)),
         Family(
-            Kind.MOTORCYCLE, "motorcycle", motorcycle.MOTORCYCLE_WORDS,
-            lambda look, luck: motorcycle.motorcycle(look.variant, luck),
+            Kind.MOTORCYCLE, "motorcycle", powered.MOTORCYCLE_WORDS,
+            lambda look, luck: powered.motorcycle(look.variant, luck),
         ),
         Family(
             Kind.BICYCLE, "bicycle", bicycle.BICYCLE_WORDS,

@@ -27,6 +27,7 @@ class Truck:
         gap: from the cab to the box. twins: the axles with two tyres a side. tank: middle of the tanks.
         rails: from where to where a steel frame runs under the box, and its width.
         legs: landing legs of a trailer. sides: corners of a wheel.
+        guard: from where to where side guards run (UNECE R73), two rails each.
     """
 
     length: float
@@ -44,6 +45,7 @@ class Truck:
     rails: tuple[float, float, float]
     legs: tuple[float, ...] = ()
     sides: int = 16
+    guard: tuple[float, ...] = ()
 
 
 TRUCKS = (
@@ -51,7 +53,7 @@ TRUCKS = (
     Truck(10.6, 2.55, 3.8, 2.2, 2.95, (1.4, 6.9, 8.25), 0.51, 1.15, m.PAINT[0], 0.15, (1, 2), 4.15,
           (0.65, 10.35, 0.9)),
     Truck(16.5, 2.55, 4.0, 2.3, 3.65, (1.4, 5.1, 10.85, 12.16, 13.47), 0.5, 1.2, m.PAINT[1], 0.6, (1,), 3.1,
-          (0.65, 16.3, 0.9), (7.4,), 12),
+          (0.65, 16.3, 0.9), (7.4,), 12, (7.9, 10.2)),
 )  # fmt: skip
 TRUCK_WORDS = ("box truck, two axles", "box truck, three axles", "lorry with semi-trailer")
 
@@ -83,6 +85,15 @@ def _wheels(t: Truck) -> list[Shell]:
     return made
 
 
+def _guards(t: Truck) -> list[Shell]:
+    """Two rails on either side, 0.6 and 0.9 m above the road."""
+    made = []
+    for start, end in zip(t.guard[::2], t.guard[1::2], strict=True):
+        x, y = t.length / 2 - (start + end) / 2, t.width / 2 - 0.03
+        made += [box((x, j * y, z), (end - start, 0.03, 0.12), m.TRIM) for j in (1, -1) for z in (0.6, 0.9)]
+    return made
+
+
 def _varied(t: Truck, longest: float, variety: Variety) -> Truck:
     """Another lorry of the same class: length behind the cab, height, cab and paint, within the law."""
     length = min(variety.below(t.length, 0.06), longest)
@@ -96,6 +107,7 @@ def _varied(t: Truck, longest: float, variety: Variety) -> Truck:
     return replace(
         t, length=length, height=height, cab_height=cab_height, axles=tuple(map(along, t.axles)),
         tank=along(t.tank), rails=(t.rails[0], along(t.rails[1]), t.rails[2]), legs=tuple(map(along, t.legs)),
+        guard=tuple(map(along, t.guard)),
         paint=variety.about(variety.pick(t.paint, m.PAINT), 0.1),
     )  # fmt: skip
 
@@ -110,6 +122,7 @@ def truck(variant: int, variety: Variety = NOMINAL) -> Shell:
     rails = t.rails[1] - t.rails[0]
     frame = front - (t.rails[0] + t.rails[1]) / 2
     parts = [
+        *_guards(t),
         _cab(t),
         box((rear + cargo / 2, 0, (t.deck + t.height) / 2), (cargo, t.width, t.height - t.deck), m.CARGO),
         box((frame, 0, 0.8), (rails, t.rails[2], t.deck - 0.6), m.STEEL),

@@ -148,7 +148,7 @@ def test_keys_and_makers_agree_and_assets_are_made_once():
 
 def test_the_catalogue_names_every_variant_once_and_says_what_it_is():
     listed = assets.catalogue()
-    assert len(set(listed)) == len(listed) == 6 + 2 + 3 + 8 + 1 + 1 + 2
+    assert len(set(listed)) == len(listed) == 6 + 2 + 3 + 8 + 1 + 2 + 2
     assert {assets.asset(k).kind for k in listed} == {*DRIVEN.values(), Kind.PEDESTRIAN}
     assert assets.describe("car/0") == "hatchback, 4.3 x 1.8 x 1.5 m"
     assert assets.describe("pedestrian/4/run/3~2").startswith("child of six, 0.")

@@ -12,6 +12,7 @@ LIMITS = {  # KITTI's cyclists and two-wheelers' data sheets: length, width, hei
     "bicycle/0": ((1.6, 1.95), (0.5, 0.88), (1.6, 1.9)),
     "bicycle/1": ((1.6, 1.95), (0.5, 0.88), (1.6, 1.9)),
     "motorcycle/0": ((2.0, 2.25), (0.7, 0.95), (1.5, 1.8)),
+    "motorcycle/1": ((1.7, 1.95), (0.6, 0.85), (1.5, 1.8)),
 }
 
 

@@ -19,7 +19,7 @@ LIMITS = {  # EU 96/53/EC for lorries and buses; segments A to F and large vans 
     Kind.VAN: ((4.5, 7.0), (1.8, 2.1), (1.8, 2.9)),
     Kind.TRUCK: ((7.0, 16.501), (2.4, 2.551), (3.1, 4.001)),
     Kind.BUS: ((11.0, 13.5), (2.4, 2.551), (2.9, 3.4)),
-    Kind.MOTORCYCLE: ((1.9, 2.3), (0.6, 1.0), (1.4, 1.9)),
+    Kind.MOTORCYCLE: ((1.7, 2.3), (0.6, 1.0), (1.4, 1.9)),
     Kind.BICYCLE: ((1.5, 2.0), (0.4, 0.9), (1.5, 2.0)),
     Kind.PEDESTRIAN: ((0.15, 1.3), (0.25, 0.8), (1.0, 2.1)),
 }
