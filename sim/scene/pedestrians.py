@@ -95,12 +95,15 @@ class Crowd:
         wish = np.array([p.wish(one, standing) for p, one in zip(self._party, self.walkers, strict=True)])
         xy = np.array([one.xy for one in self.walkers] + [s.xy for s in strangers])
         v = np.array([one.velocity for one in self.walkers] + [s.velocity for s in strangers])
-        yaw = np.array([one.yaw for one in self.walkers] + [s.yaw for s in strangers])
-        half = np.array([one.half for one in self.walkers] + [(0.45, s.body.width / 2) for s in strangers])
+        bodies = [one.body for one in self.walkers] + [s.body for s in strangers]
+        half = np.array([(b.length / 2, b.width / 2) for b in bodies])
         force = avoid(xy, v)[:n] + together(xy[:n], v[:n], self._group)
         if len(boxes):
             force = force + shun(boxes.gap(xy[:n]))
         v[:n] = relax(v[:n], wish, force, dt)
+        everyone = zip(self._party, self.walkers, v[:n], strict=True)
+        turned = [one.turned(own, party.facing, dt) for party, one, own in everyone]
+        yaw = np.array([*turned, *(s.yaw for s in strangers)])
         v = part(xy, v, yaw, half, np.arange(len(xy)) < n, dt)
         return keep_out(xy[:n], v[:n], boxes, dt)
 

@@ -29,7 +29,7 @@ class Walker:
 
     Attributes:
         xy, velocity: (2,) [m, world]. aside: its own line is so far to the left of the party's [m].
-        walked: [m]. half: (2,) of the ellipse it fills while it strides [m].
+        walked: [m].
     """
 
     def __init__(
@@ -43,7 +43,6 @@ class Walker:
             self.pace = pace * float(np.clip(1 + ALIKE * rng.normal(), 0.9, 1.1))
         self.spread = float(np.clip(SPREAD * rng.normal(), -0.6, 0.6))
         self.cycle = float(rng.uniform(0, 1))
-        self.half = np.array([self.body.length / 2, self.body.width / 2 + 0.02])
         self.aside = self.walked = self.yaw = self.yaw_rate = 0.0
         self.xy, self.velocity = np.zeros(2), np.zeros(2)
         self.home = self.xy
@@ -65,10 +64,15 @@ class Walker:
         moved = float(np.hypot(step[0], step[1]))
         self.walked += moved
         self.cycle += gait.cycles(self.body.asset, self.body.kind, moved, self.speed)
-        heading = np.arctan2(velocity[1], velocity[0]) if self.speed > TURN_ABOVE else facing
-        change = float(np.clip(wrap_angle(heading - self.yaw), -TURNING * dt, TURNING * dt))
-        self.yaw += change
-        self.yaw_rate = change / dt
+        yaw = self.turned(velocity, facing, dt)
+        self.yaw, self.yaw_rate = yaw, (yaw - self.yaw) / dt
+
+    def turned(self, velocity: F64, facing: float, dt: float) -> float:
+        """Its heading after `dt` [rad]: as far round as it can turn."""
+        fast = np.hypot(velocity[0], velocity[1]) > TURN_ABOVE
+        heading = np.arctan2(velocity[1], velocity[0]) if fast else facing
+        change = np.clip(wrap_angle(heading - self.yaw), -TURNING * dt, TURNING * dt)
+        return self.yaw + float(change)
 
     def state(self) -> State:
         """Where it is, with the mesh of this phase of its gait."""

@@ -5,6 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from datmo.geometry import corners_bev, overlap_bev
+from sim.scene.clearance import shared
 from sim.scene.walkers.boxes import Boxes
 from sim.scene.walkers.contact import SIDE, keep_out, part
 from sim.scene.walkers.sight import KEEP, look
@@ -42,22 +44,23 @@ def test_a_wall_ahead_is_passed_on_its_nearer_side() -> None:
 
 @settings(max_examples=40, deadline=None)
 @given(st.integers(0, 10**6))
-def test_after_contact_no_ellipses_come_nearer_than_touching(seed: int) -> None:
+def test_after_contact_no_boxes_overlap(seed: int) -> None:
     rng = np.random.default_rng(seed)
-    x = rng.uniform(0, 2.5, (2, 2)) + np.array([[0, 0], [1.2, 0]])
+    x = rng.uniform(0, 1.5, (2, 2)) + np.array([[0, 0], [1.5, 0]])
     v, yaw = rng.normal(0, 1.5, (2, 2)), rng.uniform(-3, 3, 2)
-    half, dt = np.tile([0.45, 0.28], (2, 1)), 0.05
-    n = (x[0] - x[1]) / np.linalg.norm(x[0] - x[1])
-    reach = sum(
-        np.sqrt((h[0] * n @ [np.cos(a), np.sin(a)]) ** 2 + (h[1] * n @ [-np.sin(a), np.cos(a)]) ** 2)
-        for h, a in zip(half, yaw, strict=True)
-    )
-    room = np.linalg.norm(x[0] - x[1]) - reach
-    after = part(x, v, yaw, half, np.array([True, True]), dt)
-    assert (after[0] - after[1]) @ n * dt >= min(-room, 1.5 * dt) - 1e-9
-    np.testing.assert_allclose(after.sum(0), v.sum(0), atol=1e-9)
+    half, dt, both = np.tile([0.45, 0.28], (2, 1)), 0.05, np.array([True, True])
+    if shared(*corners_bev(x, 2 * half, yaw)) > 0.0:
+        return
+    after = part(x, v, yaw, half, both, dt)
+    assert overlap_bev(*corners_bev(x + dt * after, 2 * half, yaw)) == 0
     fixed = part(x, v, yaw, half, np.array([True, False]), dt)
     np.testing.assert_array_equal(fixed[1], v[1])
+
+
+def test_those_who_overlap_are_parted_along_the_nearest_side() -> None:
+    x, half = np.array([[0.0, 0.0], [0.1, 0.45]]), np.tile([0.5, 0.25], (2, 1))
+    after = part(x, np.zeros((2, 2)), np.zeros(2), half, np.array([True, True]), 0.1)
+    np.testing.assert_allclose(after, [[0, -0.3], [0, 0.3]], atol=1e-9)
 
 
 def test_nobody_steps_into_a_vehicle_and_a_moving_one_pushes_ahead() -> None:
