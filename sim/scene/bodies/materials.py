@@ -5,15 +5,16 @@ scatter 0.2-0.6, rubber 0.05-0.1, cloth 0.2-0.6 whatever its colour; number plat
 retro-reflectors.
 
 Window glass throws light on or away and scatters next to none back. Its value is the one that makes the
-simulator's link budget (half the returns lost where reflectivity x cosine / range² is 1.2e-6 / m²) lose as
-many as a real HDL-64E: of the rays at the windows of two cars at 7-8 m in KITTI's odometry sequence 00,
-pillars and head rests included, 22 to 47 % come back, so of those at the panes alone about one in five.
+simulator's link budget (sim/scan/returns.py: half the returns lost where reflectance / range² is 2.3e-5 /
+m²) lose as many as a real HDL-64E: of the rays at the windows of two cars at 7-8 m in KITTI's odometry
+sequence 00, pillars and head rests included, 22 to 47 % come back, so of those at the panes alone about one
+in five.
 """
 
 from __future__ import annotations
 
 PAINT = (0.55, 0.35, 0.2, 0.45)  # white, silver, dark, bright colour
-GLASS = 8e-5
+GLASS = 1.4e-3
 TYRE = 0.06
 RIM = 0.45
 UNDERBODY = 0.1

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from datmo.messages import Kind
-from sim.scan.returns import FAINTEST
+from sim.scan.returns import FADE, FAINTEST
+from sim.scan.surface import _kept
 from sim.scene import assets
 from sim.scene.bodies import materials as m
 
@@ -25,9 +26,9 @@ def returned(key, away):
         ray = eye - middle
         R = np.linalg.norm(ray, axis=1)
         cosine = np.maximum((normal * ray).sum(1) / (area * R), 0)
-        power = a.reflectivity * cosine / R**2
+        power = a.reflectivity * np.array([_kept(c, 0.0) for c in cosine]) / R**2
         weight = area * cosine / R**2
-        back = power**3 / (power**3 + FAINTEST**3)
+        back = power**FADE / (power**FADE + FAINTEST**FADE)
         for k, those in enumerate((a.reflectivity < 0.01, a.reflectivity >= 0.01)):
             shown[k] += weight[those].sum()
             kept[k] += (weight * back)[those].sum()
