@@ -38,16 +38,26 @@ PAINTED = 0.2
 ROUGH = 0.66
 """B / A of Oren and Nayar, "Generalization of Lambert's reflectance model" (SIGGRAPH 1994), for facets
 that spread by 1 rad. Seen from where it is lit, such a surface keeps cos t + (B / A) sin² t of its
-brightness at incidence t: 0.78 at 83 degrees, as roads do in real sweeps; paint is taken as smooth."""
+brightness at incidence t: 0.78 at 83 degrees, as roads do in real sweeps."""
+SMOOTH = (*VEHICLES, Kind.UNKNOWN)
+"""Paint under a clear coat keeps cos t (1 - (1 - cos t)^5)²: diffuse, less what the coat mirrors away on the
+way in and out by Schlick's form of Fresnel's law ("An inexpensive BRDF model for physically-based
+rendering", Eurographics 1994). Bonnets at grazing angles are dark, as in real sweeps."""
 
 
 @dataclass(frozen=True, eq=False)
 class Surfaces:
-    """Per ray (m,): kind, thing (id, -1 none), reflectivity, level (mean intensity at its incidence)."""
+    """What the rays met, (m,) each.
+
+    Attributes:
+        kind: of surface. thing: id, -1 none.
+        reflectance: what comes back of a beam at its incidence, as a share of what a white diffuse
+            surface sends back head-on. level: mean intensity at its incidence.
+    """
 
     kind: U8
     thing: I32
-    reflectivity: F32
+    reflectance: F32
     level: F32
 
 
@@ -59,8 +69,16 @@ def _table(values: dict[Kind, float], default: float = 0.0) -> F32:
 
 
 RHO, MEAN, SHINE = _table(REFLECTIVITY), _table(LEVEL), _table(GLOSS, PAINTED)
-SMOOTH = (*VEHICLES, Kind.UNKNOWN)
 FLAT = _table(dict.fromkeys(SMOOTH, 0.0), ROUGH)
+
+
+@njit(cache=True, nogil=True)
+def _kept(c: float, flat: float) -> float:
+    """Share of its brightness head-on that a surface keeps at an incidence of cosine c."""
+    if flat > 0.0:
+        return float(c + flat * (1 - c * c))
+    passed = 1 - (1 - c) ** 5
+    return float(c * passed * passed)
 
 
 @njit(cache=True, nogil=True)
@@ -73,7 +91,7 @@ def _look_up(
     actors: tuple[U8, I64, F32],
     out: tuple[U8, I32, F32, F32],
 ) -> None:
-    """Fill kind, thing, reflectivity and level of rays start..stop; see `surfaces`."""
+    """Fill kind, thing, reflectance and level of rays start..stop; see `surfaces`."""
     (winner, triangle, cosine), (rho, mean, shine, flat) = hits, tables
     for r in range(rays[0], rays[1]):
         w, t = winner[r], triangle[r]
@@ -86,10 +104,9 @@ def _look_up(
         elif w != NOTHING:
             kind = actors[0][w]
             reflectivity = actors[2][actors[1][w] + t]
-        c = cosine[r]
+        kept = _kept(cosine[r], flat[kind])
         level = mean[kind] if mean[kind] > 0 else shine[kind] * reflectivity
-        level *= c + flat[kind] * (1 - c * c)
-        out[0][r], out[1][r], out[2][r], out[3][r] = kind, thing, reflectivity, level
+        out[0][r], out[1][r], out[2][r], out[3][r] = kind, thing, reflectivity * kept, level * kept
 
 
 def surfaces(

@@ -24,14 +24,16 @@ from sim.scene.scenery.around import around as surroundings
 from sim.scene.script import Script, looks_of
 from sim.scene.terrain import Terrain, build_terrain
 from sim.scene.traffic import action_space
-from sim.scene.vehicles import State
+from sim.scene.vehicles import State, body
 from sim.scene.walkers.boxes import join, of_parked, of_things
 
 FIRST_SCRIPT = 1
+FIRST_PARKED = 10001
 PHYSICS = 20.0
 """Least rate of the traffic [Hz]; a whole number of its steps fill a sweep."""
 
 AROUND = 10.0  # the terrain reaches beyond the sensor's range by this [m]
+LONGEST = 20.0  # parked vehicles are told up to this far beyond the sensor's range [m]
 Area = tuple[float, float, float, float]
 
 
@@ -98,6 +100,11 @@ class World:
         self.terrain: Terrain = build_terrain(scenario.terrain, self.roads, area, ground)
         self.things, self.parked = surroundings(scenario, self.roads, self.terrain, seed)
         self._obstacles = join([of_things(self.things), of_parked(self.parked)])
+        still = np.zeros(2)
+        self._standing = [
+            State(FIRST_PARKED + i, body(one.asset), one.xy, one.yaw, still, 0.0)
+            for i, one in enumerate(self.parked)
+        ]
         clearance.check(scenario, self._scripted(0.0), self._crowd.parties)
 
     @staticmethod
@@ -167,7 +174,9 @@ class World:
     def _play(self) -> list[list[State]]:
         """Play one period; the states (ego first) at its beginning and after each step."""
         self._traffic.refresh()
-        knots = [self._states()]
+        ego, reach = self._traffic.ego_state().xy, self.scenario.sensor.range + LONGEST
+        parked = [state for state in self._standing if np.hypot(*(state.xy - ego)) < reach]
+        knots = [self._states() + parked]
         self._traffic.way.keep(s.id for s in knots[0])
         dt = 1.0 / (self._steps * self.scenario.rate)
         for _ in range(self._steps):
@@ -175,7 +184,7 @@ class World:
             self._crowd.step(dt, self._traffic.way, self._others(), self._obstacles)
             self._traffic.step(dt)
             self._tick += 1
-            knots.append(self._states())
+            knots.append(self._states() + parked)
             self.crashed = self.crashed or hits(knots[-1][0], knots[-1][1:])
         return knots
 

@@ -29,11 +29,12 @@ DROP, FLAKE = np.pi / 4 * 0.02, 0.8
 FLUFF = 2.15  # a flake of a tenth of water's density is so much wider than its drop
 APERTURE, DIVERGENCE = 0.01, 1.5e-3  # the beam's width is APERTURE + DIVERGENCE r [m]
 PULSE = 0.75  # half the length of a 5 ns pulse [m]
-BLIND, FULL = 0.9, 10.0
+BLIND, FULL = 0.9, 5.0
 """Emitter and receiver look through lenses of their own: what is nearer than BLIND is not seen at all,
-beyond FULL wholly, between them by the square of the way. The figures are our assumption [m]."""
+beyond FULL wholly, between them by the square of the way. The figures are our assumption [m]; with them
+fog of 100 m visibility begins to be seen."""
 STEP = 0.5  # of the tables along the ray [m]
-POWERS = np.geomspace(1e-7, 1e-1, 49)  # thresholds of the tables, rho cos / R² [1/m²]
+POWERS = np.geomspace(1e-7, 1e-1, 49)  # thresholds of the tables, rho / R² [1/m²]
 
 
 def overlap(r: F64) -> F64:

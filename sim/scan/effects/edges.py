@@ -113,7 +113,7 @@ def mix_edges(
     step, L = 2 * np.pi / pattern.columns, len(pattern.elevation)
     across = np.minimum(divergence / 2 / (step * np.cos(pattern.elevation)), 0.5)
     up = np.minimum(divergence / 2 / np.maximum(np.abs(np.diff(pattern.elevation)), 1e-6), 0.5)
-    power = met.reflectivity * hits.cosine / np.maximum(hits.distance, np.float32(1e-3)) ** 2
+    power = met.reflectance / np.maximum(hits.distance, np.float32(1e-3)) ** 2
     lag = shifts(pattern)
     edge = jumps(hits.distance.reshape(L, -1), lag)
     rays = np.flatnonzero(beside(edge, lag).ravel() & returns.hit)

@@ -90,7 +90,7 @@ def add_weather(
     m = len(hits.distance)
     with np.errstate(over="ignore"):
         dim = np.exp(np.float32(-2 * air.alpha) * hits.distance) / hits.distance**2
-    power = met.reflectivity * hits.cosine * dim
+    power = met.reflectance * dim
     tables = air.powers, air.rain, air.snow, air.fog, air.fog_up_to
     chance = luck.uniform(DROPS, m), luck.uniform(FLAKES, m), luck.normal(PATCHES, m), luck.uniform(PLACE, m)
 

@@ -9,8 +9,10 @@ from scenarios.spec import IDEAL, Noise
 from sim.scan.luck import Luck
 from sim.scan.returns import (
     DARK,
+    DARKEST,
     DIM,
     DROP_OUT,
+    FADE,
     FAINTEST,
     GRAZING,
     RANGE,
@@ -34,16 +36,15 @@ def street(seed: int = 0) -> tuple[SimpleNamespace, SimpleNamespace]:
     rng = np.random.default_rng(seed)
     distance = rng.uniform(0.3, 95, M).astype(np.float32)
     distance[::17] = np.inf
-    cosine = np.where(np.isfinite(distance), rng.uniform(0.01, 1, M), 0).astype(np.float32)
-    hits = SimpleNamespace(distance=distance, cosine=cosine)
-    rho = rng.uniform(0.02, 0.9, M).astype(np.float32)
-    return hits, SimpleNamespace(reflectivity=rho, level=(0.6 * rho).astype(np.float32))
+    hits = SimpleNamespace(distance=distance)
+    rho = rng.uniform(0.0, 0.9, M).astype(np.float32) ** 3
+    return hits, SimpleNamespace(reflectance=rho, level=(0.6 * rho).astype(np.float32))
 
 
 def even(distance: float, rho: float = 0.5) -> tuple[SimpleNamespace, SimpleNamespace]:
     hits = SimpleNamespace(distance=np.full(40_000, distance, np.float32), cosine=np.ones(40_000, np.float32))
     met = SimpleNamespace(
-        reflectivity=np.full(40_000, rho, np.float32), level=np.full(40_000, 0.4, np.float32)
+        reflectance=np.full(40_000, rho, np.float32), level=np.full(40_000, 0.4, np.float32)
     )
     return hits, met
 
@@ -60,9 +61,9 @@ def reference(
         R = float(hits.distance[r])
         if not LIMITS[0] <= R <= LIMITS[1] or dropped[r] < noise.drop_out:
             continue
-        power = met.reflectivity[r] * float(hits.cosine[r]) / R**2 * np.exp(-2 * alpha * R)
+        power = max(float(met.reflectance[r]), DARKEST) / R**2 * np.exp(-2 * alpha * R)
         got = R + noise.range_std * np.sqrt(1 + WEAK / max(power, FAINTEST)) * float(error[r])
-        lost = noise.grazing and grazed[r] >= power**3 / (power**3 + FAINTEST**3)
+        lost = noise.grazing and grazed[r] >= 1 / (1 + (FAINTEST / power) ** FADE)
         if lost or not LIMITS[0] <= got <= LIMITS[1]:
             continue
         mean = float(met.level[r]) * float(gain[r // COLUMNS])
@@ -126,7 +127,7 @@ def test_lasers_answer_by_as_much_as_asked_and_one_on_the_mean() -> None:
 
 def test_a_ray_has_its_own_luck_whatever_the_others_meet() -> None:
     hits, met = street()
-    moved = SimpleNamespace(distance=hits.distance.copy(), cosine=hits.cosine)
+    moved = SimpleNamespace(distance=hits.distance.copy())
     moved.distance[:100] = np.inf
     gain = np.ones(RINGS, np.float32)
     one, other = (measure(h, met, Noise(), 0.0, LIMITS, gain, Luck(SEED)) for h in (hits, moved))

@@ -23,8 +23,8 @@ Scene = tuple[SimpleNamespace, SimpleNamespace, SimpleNamespace]
 def seen(pattern: Pattern, distance: np.ndarray, rho: float | np.ndarray = 0.3) -> Scene:
     m = distance.size
     flat = distance.astype(np.float32).ravel()
-    hits = SimpleNamespace(distance=flat, cosine=np.ones(m, np.float32))
-    met = SimpleNamespace(reflectivity=np.broadcast_to(np.float32(rho), m).copy())
+    hits = SimpleNamespace(distance=flat)
+    met = SimpleNamespace(reflectance=np.broadcast_to(np.float32(rho), m).copy())
     returns = SimpleNamespace(
         distance=np.where(np.isfinite(flat), flat, 0).astype(np.float32),
         hit=np.isfinite(flat),
@@ -94,8 +94,8 @@ def reference(grid: Pattern, scene: Scene, divergence: float) -> tuple[np.ndarra
             if n < 0 or not NEAREST <= true[n] < np.inf:
                 break
             part = 0.5 * float(share[r])
-            mine = (1 - part) * met.reflectivity[r] * hits.cosine[r] / true[r] ** 2
-            other = part * met.reflectivity[n] * hits.cosine[n] / true[n] ** 2
+            mine = (1 - part) * met.reflectance[r] / true[r] ** 2
+            other = part * met.reflectance[n] / true[n] ** 2
             gap, weight = true[n] - true[r], other / (mine + other)
             moved = gap * weight if abs(gap) < PULSE else gap * (weight > 0.5)
             distance[r] += np.float32(moved)
@@ -168,7 +168,7 @@ def test_a_bright_surface_beside_a_dark_one_takes_its_edge() -> None:
     """A sign beside a black wall far behind: the wall's rays at the edge may report the sign."""
     hits, met, returns = posts(5.0)
     wall = hits.distance > 12
-    met.reflectivity[:] = np.where(wall, 0.02, 0.9)
+    met.reflectance[:] = np.where(wall, 0.02, 0.9)
     mix_edges(GRID, hits, met, returns, 1.5e-3, NEAREST, Luck(SEED))
     changed = returns.source != np.arange(len(wall))
     assert changed.sum() > 50
