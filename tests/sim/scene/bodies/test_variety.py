@@ -91,3 +91,14 @@ def test_another_process_makes_the_same_bytes():
         subprocess.run([sys.executable, "-c", code], check=True, capture_output=True).stdout for _ in "ab"
     }
     assert len(told) == 1
+
+
+@given(looks())
+@settings(max_examples=12, deadline=None)
+def test_every_form_lies_within_the_one_box_of_its_body(look):
+    a = assets.asset(look.key)
+    assert a.size == assets.asset(look.still.key).size
+    half = np.array([a.size[0] / 2, a.size[1] / 2])
+    assert (np.abs(a.vertices[:, :2]) <= half + 1e-6).all()
+    assert a.vertices[:, 2].min() >= 0
+    assert a.vertices[:, 2].max() <= a.size[2] + 1e-6
