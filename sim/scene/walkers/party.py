@@ -28,6 +28,7 @@ LOOK = 2.5  # it makes for the point of its line so far ahead [m]
 BESIDE = 0.75  # between the lines of those who walk together [m]
 WALKS, PAUSES = (2.0, 6.0), (2.0, 5.0)  # of stop-and-go, least and most [s]
 WEAVE, WAVE = 0.4, 9.0  # sideways amplitude and length of a stroll's waves [m]
+STILL = 0.15  # who is slower waits [m/s]
 STRAY = 0.3  # who stands returns from farther away than this [m]
 NEARLY, BLOCKED = 1.2, 1.0  # who stands so near the goal [m] for so long [s] has arrived
 BOLD = ("jaywalking", "running-out")
@@ -93,7 +94,7 @@ class Party:
         if not self.going:
             self.waited = 0.0
             return
-        still = all(one.speed < 0.1 for one in self.members)
+        still = all(one.speed < STILL for one in self.members)
         self.waited = self.waited + dt if still else 0.0
         if self.walk.behaviour == "stop-and-go":
             self._pause(dt)
@@ -107,7 +108,7 @@ class Party:
         if not self.going:
             back = one.home - one.xy
             far = float(np.hypot(back[0], back[1]))
-            return back * min(one.pace / far, 1.0) if far > STRAY else np.zeros(2)
+            return back * (min(one.pace, max(far - STRAY, 0.0)) / max(far, 1e-9))
         one.home = one.xy + TAU * one.velocity
         along, limit = self._along(one), self.limit(one)
         ahead = min(along + LOOK, self.line.length)

@@ -23,6 +23,7 @@ U, R = 10.0, 0.2  # potential [m²/s²] and range [m] of a border, 1995
 FASTEST = 1.3  # times the desired speed, 1995
 BETA = (4.0, 3.0, 1.0)  # gaze, attraction, repulsion within a group, 2010
 FIELD = np.pi / 2  # of vision, to either side [rad], 2010
+PASSING, SOFT = 0.3, 0.5  # [m/s], [m]; see avoid and together
 CLOSE = 0.8  # members nearer than this keep off each other [m], 2010
 
 
@@ -34,6 +35,9 @@ def relax(velocity: F64, wish: F64, force: F64, dt: float) -> F64:
 
 def avoid(position: F64, velocity: F64) -> F64:
     """Force (n, 2) on each of n people from all others, 2009, eq. (3) to (6).
+
+    The force that turns aside fades below the relative speed PASSING, where no one passes the other:
+    as published, two who stand side by side would circle each other.
 
     Args:
         position: (n, 2) [m]. velocity: (n, 2) [m/s].
@@ -49,7 +53,9 @@ def avoid(position: F64, velocity: F64) -> F64:
     strength = A * np.exp(-distance / B)
     np.fill_diagonal(strength, 0.0)
     brake = strength * np.exp(-((N_PRIME * B * theta) ** 2))
+    moving = np.hypot(*(velocity[:, None] - velocity[None]).transpose(2, 0, 1))
     turn = strength * np.exp(-((N * B * theta) ** 2)) * np.where(theta < 0, -1.0, 1.0)
+    turn = turn * np.minimum(moving / PASSING, 1.0)
     left = np.stack([-t[..., 1], t[..., 0]], -1)
     return np.asarray(-(brake[..., None] * t + turn[..., None] * left).sum(1))
 
@@ -61,7 +67,10 @@ def shun(gap: F64) -> F64:
 
 
 def together(position: F64, velocity: F64, group: I64) -> F64:
-    """Force (n, 2) that keeps the members of a group (n,) together and abreast, 2010."""
+    """Force (n, 2) that keeps the members of a group (n,) together and abreast, 2010.
+
+    Attraction and repulsion set in over the length SOFT, not at once, so that who stands does not tremble.
+    """
     force = np.zeros_like(position)
     for name in np.unique(group):
         rows = np.flatnonzero(group == name)
@@ -80,8 +89,8 @@ def _cohesion(x: F64, v: F64) -> F64:
     cosine = (inward * v).sum(1) / np.maximum(speed, 1e-9)
     turn = np.where((speed > 0.1) & (far > 1e-6), np.arccos(np.clip(cosine, -1, 1)) - FIELD, 0.0)
     force = -gaze * np.maximum(turn, 0.0)[:, None] * v
-    force = force + np.where(far > (n - 1) / 2, attraction, 0.0)[:, None] * inward
+    force = force + attraction * np.clip((far - (n - 1) / 2) / SOFT, 0.0, 1.0)[:, None] * inward
     apart = x[:, None] - x[None]
     distance = np.hypot(apart[..., 0], apart[..., 1])
-    near = (distance < CLOSE) & (distance > 0)
-    return np.asarray(force + repulsion * (apart * (near / np.maximum(distance, 1e-9))[..., None]).sum(1))
+    push = repulsion * np.clip((CLOSE - distance) / SOFT, 0.0, 1.0) / np.maximum(distance, 1e-9)
+    return np.asarray(force + (apart * push[..., None]).sum(1))
