@@ -62,7 +62,8 @@ def _assets() -> None:
     for name in ("group", "name", "kind", "length × width × height [m]"):
         table.add_column(name, no_wrap=True)
     table.add_column("triangles", justify="right", no_wrap=True)
+    table.add_column("what", overflow="fold")
     for group, rows in catalogue().items():
         for row in rows:
-            table.add_row(group, row.name, row.kind, row.size, row.triangles)
+            table.add_row(group, row.name, row.kind, row.size, row.triangles, row.note)
     stdout().print(table, soft_wrap=False)

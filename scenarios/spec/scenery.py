@@ -62,18 +62,25 @@ class Parking(Model):
 
 STREET = {
     "rows": (
-        Row(kind="building", offset=(6.0, 8.0), every=19.0, jitter=1.5, share=0.85),
-        Row(kind="tree", offset=(1.4, 2.6), every=14.0, jitter=1.0, share=0.7),
+        Row(kind="building", offset=(6.0, 9.0), every=19.0, jitter=1.5, share=0.7),
+        Row(kind="tree", offset=(5.0, 8.0), every=8.0, jitter=2.0, share=0.6),
+        Row(kind="tree", offset=(1.2, 2.6), every=18.0, jitter=2.0, share=0.6),
         Row(kind="lamp", offset=(0.5, 0.5), every=28.0, side="right"),
         Row(kind="sign", offset=(0.5, 0.8), every=45.0, jitter=8.0, side="right"),
-        Row(kind="bin", offset=(4.0, 5.0), every=16.0, jitter=5.0, share=0.6),
-        Row(kind="hedge", offset=(5.0, 5.0), every=6.0, share=0.35),
-        Row(kind="fence", offset=(5.0, 5.0), every=6.0, share=0.35),
-        Row(kind="bollard", offset=(0.4, 0.4), every=9.0, share=0.3),
+        Row(kind="traffic_light", offset=(0.4, 0.4), every=90.0, share=0.5, side="right"),
+        Row(kind="hedge", offset=(2.6, 3.2), every=6.0, share=0.55),
+        Row(kind="fence", offset=(2.8, 3.2), every=5.0, share=0.35),
+        Row(kind="wall", offset=(2.8, 3.2), every=5.0, share=0.3),
+        Row(kind="bush", offset=(3.4, 5.5), every=3.0, jitter=1.0, share=0.6),
+        Row(kind="bush", offset=(0.6, 2.0), every=6.0, jitter=2.0, share=0.5),
+        Row(kind="bin", offset=(0.6, 1.5), every=25.0, jitter=5.0, share=0.5),
+        Row(kind="container", offset=(0.6, 1.0), every=80.0, jitter=20.0, share=0.5),
+        Row(kind="bollard", offset=(0.3, 0.3), every=9.0, share=0.15),
     ),
     "strewn": (
-        Strewn(kind="bush", density=40, clear=4.0, reach=25.0),
-        Strewn(kind="tree", density=15, clear=12.0),
+        Strewn(kind="bush", density=70, clear=6.0, reach=30.0),
+        Strewn(kind="tree", density=25, clear=12.0),
+        Strewn(kind="conifer", density=8, clear=12.0),
     ),
 }
 COUNTRY_ROAD = {

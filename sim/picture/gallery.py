@@ -73,7 +73,7 @@ def exhibit(one: Exhibit) -> Cell:
     returns = int(np.count_nonzero(which >= 0))
     size = " x ".join(f"{s:.2f}" for s in one.size)
     note = f"{size} m, {len(one.triangles)} triangles, {returns} returns at {distance(float(high[2])):g} m"
-    return one.name, note, picture
+    return f"{one.name}  {one.words}", note, picture
 
 
 def _vehicles() -> list[Cell]:

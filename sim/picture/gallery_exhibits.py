@@ -7,13 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from datmo.arrays import F32, I32, U8
-from datmo.errors import SimulationError
 from datmo.messages import Kind
-from sim.scene.assets import asset, keys
+from sim.scene.assets import asset, at_phase, catalogue, describe
 from sim.scene.scenery.kinds import SORTS, drawn, form
 
-PERSONS = (Kind.PEDESTRIAN,)
-VEHICLES = (Kind.CAR, Kind.VAN, Kind.TRUCK, Kind.BUS, Kind.MOTORCYCLE, Kind.BICYCLE)
+STEP = 3
+"""Phase in which persons are shown walking and running."""
 FRONT, BEHIND = 42.0, 142.0
 """Where actors (who look along +x) and things (whose faces are at -x and +y) are seen from [deg]."""
 SEEDS = (1, 4)
@@ -26,12 +25,13 @@ class Exhibit:
     """One mesh, standing on z = 0 about the origin.
 
     Attributes:
-        name: key of an asset, or kind and seed of a thing. kind: of most of it. size: [m].
+        name: key of an asset, or kind of a thing. words: what it is. kind: of most of it. size: [m].
         vertices: (v, 3) [m]. triangles: (t, 3). triangle_kind: (t,). reflectivity: (t,).
         azimuth_deg: whence it is looked at.
     """
 
     name: str
+    words: str
     kind: Kind
     size: Size
     vertices: F32
@@ -43,12 +43,17 @@ class Exhibit:
 
 def vehicles() -> list[Exhibit]:
     """Every mesh of a vehicle."""
-    return [_actor(key) for kind in VEHICLES for key in _keys(kind)]
+    return [_actor(key) for key in catalogue() if asset(key).kind != Kind.PEDESTRIAN]
 
 
 def persons() -> list[Exhibit]:
-    """Every person, standing, and walking."""
-    return [_actor(name) for kind in PERSONS for key in _keys(kind) for name in (key, f"{key}/3")]
+    """Every person, standing, walking and running."""
+    still = [key for key in catalogue() if asset(key).kind == Kind.PEDESTRIAN]
+    return [
+        _actor(form)
+        for key in still
+        for form in (key, *(at_phase(key, STEP, gait) for gait in ("walk", "run")))
+    ]
 
 
 def things() -> list[Exhibit]:
@@ -56,24 +61,19 @@ def things() -> list[Exhibit]:
     return [_thing(kind, seed) for kind in SORTS for seed in SEEDS]
 
 
-def _keys(kind: Kind) -> tuple[str, ...]:
-    try:
-        return keys(kind)
-    except SimulationError:
-        return ()
-
-
 def _actor(key: str) -> Exhibit:
     a = asset(key)
     kind = np.full(len(a.triangles), a.kind, np.uint8)
-    return Exhibit(key, a.kind, a.size, a.vertices, a.triangles, kind, a.reflectivity)
+    words = describe(key).rsplit(", ", 1)[0]
+    return Exhibit(key, words, a.kind, a.size, a.vertices, a.triangles, kind, a.reflectivity)
 
 
 def _thing(kind: str, seed: int) -> Exhibit:
     size = drawn(kind, seed)
     made = form(kind, size, seed)
     return Exhibit(
-        f"{kind}, seed {seed}",
+        kind,
+        f"seed {seed}",
         SORTS[kind].kind,
         size,
         made.vertices.astype(np.float32),

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
+from datmo.messages import Kind
 from sim.picture.gallery_exhibits import Exhibit, persons, vehicles
-from sim.picture.grounds import ground_names
+from sim.picture.grounds import ground, ground_names
 from sim.scene.scenery.kinds import SORTS, drawn, form
 
 SHAPES = range(8)
@@ -14,28 +17,37 @@ SHAPES = range(8)
 
 @dataclass(frozen=True)
 class Row:
-    """One line of the catalogue, ready to print; `note` tells the source of a thing's size."""
+    """One line of the catalogue, ready to print; `note` tells what it is, or the source of a thing's size."""
 
     name: str
     kind: str
     size: str
     triangles: str
-    note: str = ""
+    note: str
 
 
 def catalogue() -> dict[str, list[Row]]:
     """Rows by group: vehicles, persons, things, grounds."""
     return {
         "vehicles": [_row(one) for one in vehicles()],
-        "persons": [_row(one) for one in persons()],
+        "persons": [_row(one) for one in persons() if one.name.count("/") == 1],
         "things": [_thing(kind) for kind in SORTS],
-        "grounds": [Row(name, "FIELD, ROAD", "80 × 80", "") for name in ground_names()],
+        "grounds": [_ground(name) for name in ground_names()],
     }
 
 
 def _row(one: Exhibit) -> Row:
     size = " × ".join(f"{s:.2f}" for s in one.size)
-    return Row(one.name, one.kind.name, size, str(len(one.triangles)))
+    return Row(one.name, one.kind.name, size, str(len(one.triangles)), one.words)
+
+
+def _ground(name: str) -> Row:
+    made = ground(name)
+    x0, y0, x1, y1 = made.area
+    kinds = ", ".join(Kind(kind).name for kind in np.unique(made.kind))
+    note = f"field {made.roughness}, road {made.road_roughness}"
+    size = f"{x1 - x0:g} × {y1 - y0:g} × {np.ptp(made.height):.2f}"
+    return Row(name, kinds, size, str(2 * len(made.mesh_kind)), note)
 
 
 def _thing(kind: str) -> Row:

@@ -18,6 +18,7 @@ from sim.scene.scenery.verge import verges
 
 Area = tuple[float, float, float, float]
 CLEAR = 5.0  # free of parked vehicles before and behind another road [m]
+LOOKS = 6  # that vehicles of one model come in, of the catalogue's seeds
 ASKEW = 0.02  # spread of how vehicles stand to the road [rad]
 
 
@@ -79,7 +80,7 @@ def _which(rule: spec.Parking, share: float, rng: np.random.Generator) -> tuple[
     """A vehicle's key and kind."""
     kind = Kind.TRUCK if share < rule.trucks else Kind.VAN if share < rule.trucks + rule.vans else Kind.CAR
     some = keys(kind)
-    return some[int(rng.integers(len(some)))], kind
+    return f"{some[int(rng.integers(len(some)))]}~{int(rng.integers(LOOKS))}", kind
 
 
 def _free(one: Parked, edges: Edges, others: Sequence[Parked]) -> bool:

@@ -31,7 +31,7 @@ def tree(size: Size, seed: int) -> Form:
     count, side = sprays(TREE_DENSITY * 4 / 3 * np.pi * float(np.prod(crown)), spray, MOST)
     inner = crown - side / np.sqrt(3)
     places = clumped(in_ball(round(SPARE * count), rng) * inner + middle, count, 0.35 * length, rng)
-    thick = 0.014 * height + 0.03
+    thick = 0.012 * height + 0.02
     fork = np.array([0.0, 0.0, base + 0.1 * height])
     boughs = [limb(np.array([0.0, 0.0, -ROOT]), fork, (1.15 * thick, 0.8 * thick), 10)]
     count_of_boughs = int(rng.integers(4, 7))
