@@ -14,7 +14,7 @@ STREET = Scenario.model_validate(
     {
         "name": "street",
         "duration": 9.0,
-        "terrain": {"cell": 3.0},
+        "terrain": {"cell": 2.0},
         "sensor": {"range": 60.0},
         "traffic": {"environment": None, "vehicles": 14},
         "ego": {"speed": 8.0, "start": 60},
@@ -82,13 +82,11 @@ def test_nobody_is_run_over_and_those_who_come_brake(seed: int) -> None:
     assert max(np.ptp(way[:, 0]) for way in ways) > 9
 
 
-def test_walkers_do_not_change_the_luck_of_the_traffic_at_the_start() -> None:
-    alone = World(
-        STREET.model_copy(update={"pedestrians": STREET.pedestrians[:1]}), np.random.SeedSequence(3)
-    )
-    all_ = World(STREET, np.random.SeedSequence(3))
-    for world in (alone, all_):
+def test_walkers_do_not_change_the_luck_of_the_first() -> None:
+    fewer = STREET.model_copy(update={"pedestrians": STREET.pedestrians[:1]})
+    worlds = [World(scenario, np.random.SeedSequence(3)) for scenario in (fewer, STREET)]
+    for world in worlds:
         world.reset()
-    a, b = (next(s for s in w._states() if s.id == 101) for w in (alone, all_))
+    a, b = (next(s for s in w._states() if s.id == 101) for w in worlds)
     assert a.body.asset == b.body.asset
-    np.testing.assert_array_equal(a.xy, b.xy)
+    np.testing.assert_allclose(a.xy, b.xy, atol=1e-6)  # they feel each other from afar
