@@ -36,30 +36,20 @@ def compare(
       datmo compare velodyne/*.bin
       datmo compare scan.bin --scenario rough-crossing --seed 3 --out runs/compare
     """
-    import json
-
     from eval import console
-    from eval.compare import judge, mean, show
-    from eval.compare.sweeps import real as read
-    from eval.compare.sweeps import simulated as simulate
-    from eval.output import refuse_existing, writing_folder
+    from eval.compare import show
+    from eval.compare.sweeps import side_by_side
+    from eval.output import refuse_existing
     from scenarios.load import load
-    from sim.scan.units import unit
 
     if out is not None:
         refuse_existing(out, force)
     world = load(scenario, o.settings(set_))
-    measured = mean([read(path) for path in real])
     with console.progress("scans", world.scans) as tell:
-        played, errors = simulate(world, seed, sweeps, tell)
-    made = mean(played)
-    lines = judge(measured, made, unit(world.sensor.unit), errors)
-    screen = console.stdout()
-    screen.print(show.table(lines))
+        measured, made, lines = side_by_side(real, world, seed, sweeps, tell)
+    console.stdout().print(show.table(lines))
     if out is not None:
-        content = show.record(lines, [path.name for path in real], world.name, seed, len(played))
-        with writing_folder(out, force) as beside:
-            (beside / "compare.json").write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
-            (beside / "compare.png").write_bytes(show.picture(measured, made))
-        screen.print(f"written: {out}", markup=False)
+        content = show.record(lines, [path.name for path in real], world.name, seed, sweeps)
+        show.write(content, show.picture(measured, made), out, force)
+        console.stdout().print(f"written: {out}", markup=False)
     return int(any(line.met is False for line in lines))

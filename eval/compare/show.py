@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from dataclasses import asdict
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,6 +16,7 @@ from rich.table import Table
 from eval.compare.judge import Line
 from eval.compare.profile import BINS, Profile
 from eval.facts import versions
+from eval.output import writing_folder
 from eval.report.style import SERIES, plain, png
 
 MARK = {True: "yes", False: "NO", None: ""}
@@ -74,3 +77,14 @@ def picture(real: Profile, simulated: Profile) -> bytes:
     right.set_ylabel("share of firings without a return")
     left.legend(frameon=False, fontsize=8)
     return png(made)
+
+
+def write(content: dict[str, Any], figure: bytes, folder: Path, force: bool) -> None:
+    """Leave compare.json and compare.png in `folder`.
+
+    Raises:
+        OutputError: `folder` exists and `force` is not set.
+    """
+    with writing_folder(folder, force) as beside:
+        (beside / "compare.json").write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
+        (beside / "compare.png").write_bytes(figure)

@@ -13,7 +13,8 @@ from datmo.messages import Kind
 from datmo.refine import rings_of
 from eval import clouds
 from eval.compare.elevation import errors
-from eval.compare.profile import Profile, profile
+from eval.compare.judge import Line, judge
+from eval.compare.profile import Profile, mean, profile
 from eval.episode import episode
 from scenarios.spec import Scenario
 from sim.env import LidarEnv
@@ -86,6 +87,16 @@ def simulated(
         tell(k + 1, "")
     env.close()
     return found, _median(off)
+
+
+def side_by_side(
+    paths: Sequence[Path], scenario: Scenario, seed: int, sweeps: int, tell: Callable[[int, str], None]
+) -> tuple[Profile, Profile, list[Line]]:
+    """Mean statistics of the real and of the simulated sweeps, and the lines that compare them."""
+    measured = mean([real(path) for path in paths])
+    played, off = simulated(scenario, seed, sweeps, tell)
+    made = mean(played)
+    return measured, made, judge(measured, made, unit(scenario.sensor.unit), off)
 
 
 def _median(rows: Sequence[F64]) -> F64:

@@ -32,9 +32,8 @@ LEVEL = {
 }
 """Mean intensity head-on where it is not 0. With the zeros, and at the angles at which streets are seen,
 these give the class means of real HDL-64 sweeps."""
-GLOSS = {Kind.PEDESTRIAN: 0.7, Kind.BICYCLE: 0.4, Kind.MOTORCYCLE: 0.3}
-"""Of what has no such level, as a share of its reflectivity: cloth scatters, paint throws light away."""
-PAINTED = 0.2
+GLOSS = {Kind.PEDESTRIAN: 0.7, Kind.BICYCLE: 0.7, Kind.MOTORCYCLE: 0.7}
+"""Intensity head-on of what has no such level, as a share of its reflectivity: of cloth; 1 of all else."""
 ROUGH = 0.66
 """B / A of Oren and Nayar, "Generalization of Lambert's reflectance model" (SIGGRAPH 1994), for facets
 that spread by 1 rad. Seen from where it is lit, such a surface keeps cos t + (B / A) sin² t of its
@@ -68,7 +67,7 @@ def _table(values: dict[Kind, float], default: float = 0.0) -> F32:
     return table
 
 
-RHO, MEAN, SHINE = _table(REFLECTIVITY), _table(LEVEL), _table(GLOSS, PAINTED)
+RHO, MEAN, SHINE = _table(REFLECTIVITY), _table(LEVEL), _table(GLOSS, 1.0)
 FLAT = _table(dict.fromkeys(SMOOTH, 0.0), ROUGH)
 
 

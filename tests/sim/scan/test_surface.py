@@ -9,7 +9,7 @@ import pytest
 
 from datmo.messages import Kind
 from sim.scan.merge import NOTHING, TERRAIN, THING
-from sim.scan.surface import LEVEL, PAINTED, REFLECTIVITY, ROUGH, surfaces
+from sim.scan.surface import LEVEL, REFLECTIVITY, ROUGH, surfaces
 
 
 def met(winner: int, cosine: np.ndarray, kind: Kind, rho: float = 0.4) -> SimpleNamespace:
@@ -46,7 +46,7 @@ def test_paint_goes_dark_at_grazing_angles() -> None:
     exact = c * ((1 - mirrored) / (1 - mirrored[0])) ** 2
     got = met(0, c, Kind.CAR, rho=0.4)
     np.testing.assert_allclose(got.reflectance / 0.4, exact, atol=0.025)  # Schlick's form is near
-    np.testing.assert_allclose(got.level, PAINTED * got.reflectance, rtol=1e-5)
+    np.testing.assert_allclose(got.level, got.reflectance, rtol=1e-5)
     assert got.reflectance[-1] < 0.03 * got.reflectance[0]
 
 

@@ -37,10 +37,10 @@ def returned(key, away):
 
 @pytest.mark.parametrize("key", assets.keys(Kind.CAR))
 def test_four_in_five_rays_at_windows_do_not_come_back_from_eight_metres(key):
-    """As from two cars in three sweeps of a real HDL-64E; all else of a car returns."""
+    """As from two cars in three sweeps of a real HDL-64E; nearly all else of a car returns."""
     glass, rest = returned(key, 7.0)
     assert 0.08 < glass < 0.35
-    assert rest > 0.97
+    assert rest > 0.95
     assert returned(key, 20.0)[0] < 0.01
     assert returned(key, 2.5)[0] > 0.8
 
