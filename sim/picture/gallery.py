@@ -11,6 +11,7 @@ from PIL import Image, ImageDraw, ImageFont
 from datmo.arrays import F64, U8
 from sim.picture.gallery_cloud import cloud, distance
 from sim.picture.gallery_exhibits import Exhibit, persons, things, vehicles
+from sim.picture.gallery_scenes import pictures, presets
 from sim.picture.gallery_view import camera, colours, mesh_view, splat
 from sim.picture.grounds import ground, ground_names
 from sim.picture.terrain import terrain_view
@@ -88,6 +89,11 @@ def _things() -> list[Cell]:
     return [exhibit(one) for one in things()]
 
 
+def _scenery() -> list[Cell]:
+    shown = [(name, pictures(name)) for name in presets()]
+    return [cell for name, (seen, swept) in shown for cell in ((name, "", seen), ("", "one sweep", swept))]
+
+
 def _grounds() -> list[Cell]:
     return [(name, "", terrain_view(ground(name), 300)) for name in ground_names()]
 
@@ -96,6 +102,7 @@ SHEETS: dict[str, tuple[Callable[[], list[Cell]], int]] = {
     "vehicles": (_vehicles, ACROSS),
     "persons": (_persons, ACROSS),
     "things": (_things, ACROSS),
+    "scenery": (_scenery, 2),
     "grounds": (_grounds, GROUNDS_ACROSS),
 }
 """How each sheet is drawn, and how many pictures lie side by side."""

@@ -40,7 +40,7 @@ def cloud(vertices: F32, triangles: I32, azimuth_deg: float) -> tuple[F64, I32]:
     c, s = -towards  # the sensor looks back along its azimuth
     turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
     stand = np.append((off + side) * towards, HEIGHT)
-    rays = _rays()
+    rays = hdl64()
     ahead = np.abs(np.arctan2(rays.directions[..., 1], rays.directions[..., 0])) < np.arctan2(aside, off)
     d = np.einsum("ij,nj->ni", turn, rays.directions[ahead])
     o = np.einsum("ij,nj->ni", turn, rays.origins[ahead]) + stand
@@ -56,5 +56,6 @@ def cloud(vertices: F32, triangles: I32, azimuth_deg: float) -> tuple[F64, I32]:
 
 
 @cache
-def _rays() -> Pattern:
+def hdl64() -> Pattern:
+    """The rays of one sweep."""
     return pattern(unit(UNIT), RATE)

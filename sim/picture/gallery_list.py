@@ -27,11 +27,12 @@ class Row:
 
 
 def catalogue() -> dict[str, list[Row]]:
-    """Rows by group: vehicles, persons, things, grounds."""
+    """Rows by group, as the sheets are named; the presets of scenery have none."""
     return {
         "vehicles": [_row(one) for one in vehicles()],
         "persons": [_row(one) for one in persons() if one.name.count("/") == 1],
         "things": [_thing(kind) for kind in SORTS],
+        "scenery": [],
         "grounds": [_ground(name) for name in ground_names()],
     }
 

@@ -11,11 +11,11 @@ from datmo.messages import Kind
 from sim.picture.palette import KIND
 from sim.scan.embree import MISS, Mesh
 
-FLOOR, SHADE, BACK = (226, 229, 233), (176, 182, 190), (240, 243, 247)
+FLOOR, BACK = (228, 231, 235), (214, 226, 236)
 LIGHT = np.array([0.35, 0.55, 0.85])
-AMBIENT = 0.42
+AMBIENT, BRIGHT = 0.55, 1.25
 FINER = 3  # rays a pixel along each side
-LIFT = 1e-3  # of what looks for the light, off the floor [m]
+LIFT = 4e-3  # of what looks for the light, off its surface [m]
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,6 +71,15 @@ def camera(low: F64, high: F64, shape: tuple[int, int], azimuth_deg: float, rise
     return Camera(middle - away * forward, axes, scale, shape)
 
 
+def looking(eye: F64, target: F64, fov_deg: float, shape: tuple[int, int]) -> Camera:
+    """A camera at `eye` (3,) that looks at `target` (3,), so wide from left to right."""
+    forward = (target - eye) / np.sqrt(np.sum((target - eye) ** 2))
+    right = np.cross(forward, [0.0, 0.0, 1.0])
+    right /= np.sqrt(np.sum(right**2))
+    axes = np.stack([right, np.cross(right, forward), forward])
+    return Camera(eye, axes, 2 * float(np.tan(np.deg2rad(fov_deg) / 2)) / shape[1], shape)
+
+
 def colours(kind: U8, reflectivity: F32) -> F64:
     """Colours (t, 3) of triangles: their kind's, lighter where they reflect more."""
     table = np.zeros((len(Kind), 3))
@@ -80,27 +89,28 @@ def colours(kind: U8, reflectivity: F32) -> F64:
     return np.asarray(table[kind] * bright[:, None])
 
 
-def mesh_view(vertices: F32, triangles: I32, colour: F64, view: Camera) -> U8:
-    """The mesh (v, 3), (t, 3) with colours (t, 3) on the floor z = 0, as a picture (h, w, 3)."""
+def mesh_view(vertices: F32, triangles: I32, colour: F64, view: Camera, level: float = 0.0) -> U8:
+    """The mesh (v, 3), (t, 3) with colours (t, 3) in the sun, over a floor z = level, as a picture (h, w, 3)."""
     h, w = view.shape
     fine = Camera(view.eye, view.axes, view.scale / FINER, (h * FINER, w * FINER))
     d, mesh = fine.directions(0.5), Mesh(vertices, triangles)
     light = LIGHT / np.sqrt(np.sum(LIGHT**2))
     hits = mesh.cast(_many(view.eye, len(d)), d.astype(np.float32))
-    met = (hits.triangle >= 0) & (view.eye[2] + hits.distance * d[:, 2] > -LIFT)
-    image = np.empty((len(d), 3))
-    image[:] = BACK
-    floor = ~met & (d[:, 2] < 0)
-    reach = np.where(floor, -view.eye[2] / np.where(floor, d[:, 2], -1.0), np.inf)
-    place = view.eye + reach[floor, None] * d[floor]
-    place[:, 2] = LIFT
-    dark = mesh.cast(place.astype(np.float32), _many(light, len(place))).distance < MISS
-    image[floor] = np.where(dark[:, None], SHADE, FLOOR)
-    normal = hits.normal[met].astype(float)
+    floor = np.where(d[:, 2] < 0, (level - view.eye[2]) / np.minimum(d[:, 2], -1e-9), np.inf)
+    reach = np.where(hits.triangle >= 0, hits.distance.astype(float), np.inf)
+    on = (reach < floor + LIFT) & (hits.triangle >= 0)
+    met = np.flatnonzero(on | np.isfinite(floor))
+    on, reach = on[met], np.minimum(reach, floor)[met]
+    normal = np.where(on[:, None], hits.normal[met].astype(float), [0.0, 0.0, 1.0])
     normal /= np.sqrt(np.sum(normal**2, 1))[:, None]
     normal *= -np.sign(np.sum(normal * d[met], 1))[:, None]
-    bright = AMBIENT + (1 - AMBIENT) * np.clip(np.sum(normal * light, 1), 0, 1)
-    image[met] = colour[hits.triangle[met]] * bright[:, None]
+    place = view.eye + reach[:, None] * d[met] + LIFT * normal
+    sunny = mesh.cast(place.astype(np.float32), _many(light, len(met))).distance >= MISS
+    facing = np.clip(np.sum(normal * light, 1), 0, 1) * sunny
+    base = np.where(on[:, None], colour[hits.triangle[met]], FLOOR)
+    image = np.empty((len(d), 3))
+    image[:] = BACK
+    image[met] = base * (AMBIENT + (1 - AMBIENT) * np.minimum(facing * BRIGHT, 1.0))[:, None]
     coarse = image.reshape(h, FINER, w, FINER, 3).mean((1, 3))
     return np.asarray(np.clip(coarse, 0, 255), np.uint8)
 
