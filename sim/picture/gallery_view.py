@@ -90,7 +90,7 @@ def colours(kind: U8, reflectivity: F32) -> F64:
 
 
 def mesh_view(vertices: F32, triangles: I32, colour: F64, view: Camera, level: float = 0.0) -> U8:
-    """The mesh (v, 3), (t, 3) with colours (t, 3) in the sun, over a floor z = level, as a picture (h, w, 3)."""
+    """The mesh (v, 3), (t, 3) with colours (t, 3) in the sun, on a floor z = level: a picture (h, w, 3)."""
     h, w = view.shape
     fine = Camera(view.eye, view.axes, view.scale / FINER, (h * FINER, w * FINER))
     d, mesh = fine.directions(0.5), Mesh(vertices, triangles)
