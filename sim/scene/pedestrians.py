@@ -16,7 +16,7 @@ from sim.scene.vehicles import State
 from sim.scene.walkers.boxes import Boxes, join, of_states
 from sim.scene.walkers.contact import keep_out, part
 from sim.scene.walkers.party import RADIUS, Party
-from sim.scene.walkers.social import avoid, relax, shun, together
+from sim.scene.walkers.social import FASTEST, avoid, relax, shun, together
 from sim.scene.walkers.walker import Walker
 
 FIRST_ID = 101
@@ -81,18 +81,19 @@ class Crowd:
         driving = of_states([s for s in others if s.body.kind != Kind.PEDESTRIAN])
         boxes = join([driving, things])
         strangers = [s for s in others if s.body.kind == Kind.PEDESTRIAN]
-        wanted = self._wanted(dt, boxes, strangers)
         points, reach = _threat(right_of_way, others)
+        wanted = self._wanted(dt, boxes, strangers, _flight(self.walkers, points, reach))
         for party, one, velocity in zip(self._party, self.walkers, wanted, strict=True):
             safe = party.held(one, one.capped(velocity), dt)
             one.move(_permitted(party, one, safe, points, reach, dt), party.facing, dt)
         self.place(right_of_way)
 
-    def _wanted(self, dt: float, boxes: Boxes, strangers: Sequence[State]) -> F64:
+    def _wanted(self, dt: float, boxes: Boxes, strangers: Sequence[State], flight: F64) -> F64:
         """Velocities (n, 2) after wishes, social forces and contacts."""
         n = len(self.walkers)
         standing = boxes.only(boxes.speed() < DRIVES)
         wish = np.array([p.wish(one, standing) for p, one in zip(self._party, self.walkers, strict=True)])
+        wish = np.where(np.isnan(flight), wish, flight)
         xy = np.array([one.xy for one in self.walkers] + [s.xy for s in strangers])
         v = np.array([one.velocity for one in self.walkers] + [s.velocity for s in strangers])
         bodies = [one.body for one in self.walkers] + [s.body for s in strangers]
@@ -114,6 +115,22 @@ def _threat(right_of_way: RightOfWay, others: Sequence[State]) -> tuple[F64, F64
     claims = [right_of_way.brake[i] for i in moving if i in right_of_way.brake]
     points = np.concatenate([np.zeros((0, 2)), *(c.points for c in claims)])
     return points, np.concatenate([np.zeros(0), *(np.full(len(c.points), c.radius) for c in claims)])
+
+
+def _flight(walkers: Sequence[Walker], points: F64, reach: F64) -> F64:
+    """Where to and how fast (n, 2) [m/s] those flee who stand where a vehicle will be; NaN for all others.
+
+    Vehicles of the traffic stop before people; scripts do not, nor may an agent.
+    """
+    wish = np.full((len(walkers), 2), np.nan)
+    for i, one in enumerate(walkers):
+        away = one.xy - points
+        away = away[np.hypot(away[:, 0], away[:, 1]) < reach + RADIUS]
+        if len(away):
+            right = np.array([np.sin(one.yaw), -np.cos(one.yaw)])
+            out = away.mean(0) + 0.05 * right  # who stands in the very middle goes to the right
+            wish[i] = out * (FASTEST * one.pace / max(float(np.hypot(*out)), 1e-9))
+    return wish
 
 
 def _permitted(party: Party, one: Walker, velocity: F64, points: F64, reach: F64, dt: float) -> F64:

@@ -8,7 +8,7 @@ from datmo.arrays import F64, Bool
 from sim.scene.walkers.boxes import Boxes
 
 ROUNDS = 4
-PUSH = 1.5  # most that a body is pushed out of another [m/s]
+PUSH = 0.5  # most that a body is pushed out of another [m/s]
 GAP = 0.01  # kept between boxes, for they turn, too [m]
 ASIDE = 0.5  # who is held up steps to the right with this share of the speed it gives up
 NEAR = 3.0  # people farther apart than this cannot touch [m]

@@ -23,6 +23,7 @@ U, R = 10.0, 0.2  # potential [m²/s²] and range [m] of a border, 1995
 FASTEST = 1.3  # times the desired speed, 1995
 BETA = (4.0, 3.0, 1.0)  # gaze, attraction, repulsion within a group, 2010
 FIELD = np.pi / 2  # of vision, to either side [rad], 2010
+GLANCE = 0.3  # most that the wish to see the others slows the foremost down [rad]; unbounded in 2010
 PASSING, SOFT = 0.3, 0.5  # [m/s], [m]; see avoid and together
 CLOSE = 0.8  # members nearer than this keep off each other [m], 2010
 
@@ -88,7 +89,7 @@ def _cohesion(x: F64, v: F64) -> F64:
     speed = np.hypot(v[:, 0], v[:, 1])
     cosine = (inward * v).sum(1) / np.maximum(speed, 1e-9)
     turn = np.where((speed > 0.1) & (far > 1e-6), np.arccos(np.clip(cosine, -1, 1)) - FIELD, 0.0)
-    force = -gaze * np.maximum(turn, 0.0)[:, None] * v
+    force = -gaze * np.clip(turn, 0.0, GLANCE)[:, None] * v
     force = force + attraction * np.clip((far - (n - 1) / 2) / SOFT, 0.0, 1.0)[:, None] * inward
     apart = x[:, None] - x[None]
     distance = np.hypot(apart[..., 0], apart[..., 1])

@@ -12,6 +12,7 @@ from sim.scene.autopilot import Claim, RightOfWay
 from sim.scene.pedestrians import Crowd
 from sim.scene.roads import Road
 from sim.scene.vehicles import Body, State
+from sim.scene.walkers.boxes import Boxes
 from sim.scene.walkers.line import on_road
 from sim.scene.walkers.party import PATIENCE
 
@@ -148,6 +149,29 @@ def test_a_parked_car_is_walked_around() -> None:
         assert np.hypot(*gap.T).min() > 0.35
         assert rows[:, 1].max() > 7.9
         assert np.hypot(*np.diff(rows[:240, :2], axis=0).T).sum() < 22
+
+
+def test_a_group_goes_round_a_wall() -> None:
+    wall = Boxes(np.array([[0.5, 0.0]]), np.array([[4.0, 0.15]]), np.zeros(1), np.zeros((1, 2)))
+    people = crowd(walk(start=(2, -5), goal=(2, 5), group=3), roads=[])
+    for _ in range(300):
+        people.step(DT, RightOfWay(), (), wall)
+    assert min(one.xy[1] for one in people.walkers) > 1 or people.parties[0].way < 0
+
+
+def test_people_leave_the_way_of_a_scripted_car() -> None:
+    people, way = (
+        crowd(walk(start=(0, 0.3), goal=(9, 0.3)), walk(behaviour="waiting"), roads=[]),
+        RightOfWay(),
+    )
+    people.walkers[1].xy = people.walkers[1].home = np.array([12.0, 20.0])
+    for k in range(200):
+        x = -40 + 6 * DT * k
+        way.place(1, Claim(np.stack([x + np.arange(-2, 26, 0.5), np.zeros(56)], -1), 0.9))
+        people.step(DT, way, [car(-99, 0), car(x, 0.0, (6.0, 0.0), name=1)])
+        gap = np.maximum(np.abs(people.walkers[0].xy - [x, 0.0]) - [2.0, 0.9], 0)
+        assert np.hypot(*gap) > 0.3
+    assert people.walkers[1].speed == pytest.approx(0.0, abs=1e-6)
 
 
 @pytest.mark.parametrize("size", [2, 3, 5])

@@ -34,6 +34,14 @@ def test_nothing_in_the_way_is_straight_on() -> None:
     np.testing.assert_allclose(look(np.zeros(2), AHEAD, 2 * AHEAD, 1.4, behind), [1.4, 0], atol=1e-12)
 
 
+def test_who_stands_before_a_wall_goes_along_it_to_its_nearer_end() -> None:
+    wall = boxes((0, 3, 8, 0.3, 0))
+    v = look(np.array([1.7, 2.0]), np.array([0.0, 1.0]), np.array([1.0, 8.0]), 1.4, wall)
+    assert v[0] > 1.3
+    v = look(np.array([-0.5, 2.4]), np.array([0.0, 1.0]), np.array([0.0, 8.0]), 1.4, wall)
+    assert v[0] < -1.3
+
+
 def test_a_wall_ahead_is_passed_on_its_nearer_side() -> None:
     v = look(np.zeros(2), AHEAD, 20 * AHEAD, 1.4, boxes((5, 1, 0.5, 4, 0)))
     assert v[1] < 0
@@ -59,8 +67,8 @@ def test_after_contact_no_boxes_overlap(seed: int) -> None:
 
 def test_those_who_overlap_are_parted_along_the_nearest_side() -> None:
     x, half = np.array([[0.0, 0.0], [0.1, 0.45]]), np.tile([0.5, 0.25], (2, 1))
-    after = part(x, np.zeros((2, 2)), np.zeros(2), half, np.array([True, True]), 0.1)
-    np.testing.assert_allclose(after, [[0, -0.3], [0, 0.3]], atol=1e-9)
+    after = part(x, np.zeros((2, 2)), np.zeros(2), half, np.array([True, True]), 0.2)
+    np.testing.assert_allclose(after, [[0, -0.15], [0, 0.15]], atol=1e-9)
 
 
 def test_nobody_steps_into_a_vehicle_and_a_moving_one_pushes_ahead() -> None:
