@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from scenarios.spec.base import Model
 from scenarios.spec.things import Size, ThingKind
@@ -44,11 +44,14 @@ class Strewn(Model):
 
 
 class Parking(Model):
-    """Vehicles that stand beside the road, along it."""
+    """Vehicles that stand beside the road, along or across it."""
 
     share: Share = Field(0.6, description="of the places that are taken")
-    every: float = Field(6.5, ge=3, le=500, description="length of a place [m]")
-    gap: float = Field(0.3, ge=0, le=20, description="from the road's edge to the vehicle's side [m]")
+    across: bool = Field(False, description="side by side, nose or tail to the road")
+    every: float | None = Field(
+        None, ge=2.2, le=500, description="of the road for a place [m]; null: 6.5, across 2.8"
+    )
+    gap: float = Field(0.3, ge=0, le=20, description="from the road's edge to the vehicle [m]")
     side: Side = "both"
     vans: Share = Field(0.12, description="share of vans")
     trucks: Share = Field(0.0, description="share of trucks")
@@ -58,6 +61,11 @@ class Parking(Model):
         if self.vans + self.trucks > 1:
             raise ValueError(f"vans {self.vans} and trucks {self.trucks} are more than all; lower one")
         return self
+
+    @property
+    def place(self) -> float:
+        """Length of road that a place takes [m]."""
+        return self.every or (2.8 if self.across else 6.5)
 
 
 STREET = {
@@ -115,7 +123,17 @@ class Scenery(Model):
     preset: Literal["none", "street", "country-road", "forest"] = Field("none", description="rules by name")
     rows: tuple[Row, ...] = ()
     strewn: tuple[Strewn, ...] = ()
-    parking: Parking | None = Field(None, description="null: nobody parks")
+    parking: tuple[Parking, ...] = Field((), description="rows of parked vehicles; one, or a list")
+
+    @field_validator("parking", mode="before")
+    @classmethod
+    def _one_or_more(cls, value: object) -> object:
+        """One rule stands for a list of one, null for none."""
+        if value is None:
+            return ()
+        if isinstance(value, dict | Parking):
+            return (value,)
+        return tuple(value) if isinstance(value, list) else value
 
     @property
     def all_rows(self) -> tuple[Row, ...]:

@@ -50,7 +50,7 @@ def scene(name: str) -> Scene:
     model = spec.Terrain.model_validate({"cell": 0.25, "roughness": "D", "layers": layers})
     lanes, seed = roads(), np.random.SeedSequence(2)
     ground = build_terrain(model, lanes, area, seed)
-    scenery = spec.Scenery(preset=name, parking=spec.Parking() if name == "street" else None)
+    scenery = spec.Scenery(preset=name, parking=(spec.Parking(),) if name == "street" else ())
     standing = parked(scenery, lanes, seed, area)
     things = scatter(scenery, lanes, ground, area, seed, [one.corners for one in standing])
     parts = [_ground(ground), *(_thing(stand(thing, ground)) for thing in things)]

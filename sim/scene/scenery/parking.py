@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,11 +14,12 @@ from sim.scene.assets import asset, keys
 from sim.scene.roads import Road
 from sim.scene.scenery.edges import Edges
 from sim.scene.scenery.plot import CLOSE, outline, overlap, rectangle
-from sim.scene.scenery.verge import verges
+from sim.scene.scenery.verge import Verge, verges
 
 Area = tuple[float, float, float, float]
 CLEAR = 5.0  # free of parked vehicles before and behind another road [m]
 LOOKS = 6  # that vehicles of one model come in, of the catalogue's seeds
+SPARE = {False: 0.5, True: 0.6}  # of a place, along and across, for manoeuvres and doors [m]
 ASKEW = 0.02  # spread of how vehicles stand to the road [rad]
 
 
@@ -55,25 +56,33 @@ def parked(
         area: x_min, y_min, x_max, y_max where they may have their middle [m, world].
         taken: polygons (p, 2) that stay free [m, world].
     """
-    rule = scenery.parking
     edges, found = Edges(roads), list[Parked]()
-    for k, verge in enumerate(verges(roads, rule.side) if rule else ()):
-        assert rule is not None
-        rng = np.random.default_rng(np.random.SeedSequence(seed.entropy, spawn_key=(*seed.spawn_key, k)))
-        n = int(verge.length / rule.every)
-        here, sort, askew = rng.uniform(0, 1, n) < rule.share, rng.uniform(0, 1, n), rng.normal(0, ASKEW, n)
-        for i in np.flatnonzero(here):
-            s = (i + 0.5) * rule.every
-            key, kind = _which(rule, float(sort[i]), rng)
-            length, width, _ = asset(key).size
-            if length > rule.every - 0.5:
-                continue
-            xy = verge.at(np.array([s]), np.array([rule.gap + width / 2 + ASKEW * length]))[0]
-            one = Parked(key, kind, xy, verge.yaw(s) + float(askew[i]))
-            inside = area[0] <= xy[0] <= area[2] and area[1] <= xy[1] <= area[3]
-            if inside and _free(one, edges, found) and not any(overlap(one.corners, p) for p in taken):
-                found.append(one)
+    for r, rule in enumerate(scenery.parking):
+        for k, verge in enumerate(verges(roads, rule.side)):
+            key = (*seed.spawn_key, r, k)
+            rng = np.random.default_rng(np.random.SeedSequence(seed.entropy, spawn_key=key))
+            for one, row in _row(rule, verge, rng):
+                x, y = one.xy
+                inside = area[0] <= x <= area[2] and area[1] <= y <= area[3]
+                if inside and _free(one, row, edges, found, taken):
+                    found.append(one)
     return tuple(found)
+
+
+def _row(rule: spec.Parking, verge: Verge, rng: np.random.Generator) -> Iterator[tuple[Parked, F64]]:
+    """The vehicles of one side of a road, and the polygon (4, 2) that each needs off other roads."""
+    n = int(verge.length / rule.place)
+    here, sort, askew = rng.uniform(0, 1, n) < rule.share, rng.uniform(0, 1, n), rng.normal(0, ASKEW, n)
+    turn = np.where(rng.uniform(0, 1, n) < 0.5, 1, -1) * (np.pi / 2 if rule.across else 0.0)
+    for i in np.flatnonzero(here):
+        s = (i + 0.5) * rule.place
+        key, kind = _which(rule, float(sort[i]), rng)
+        along, deep = np.array(asset(key).size[:2])[:: -1 if rule.across else 1]
+        if along > rule.place - SPARE[rule.across]:
+            continue
+        xy = verge.at(np.array([s]), np.array([rule.gap + deep / 2 + ASKEW * along]))[0]
+        row = rectangle(xy, verge.yaw(s), along + 2 * CLEAR, 0.5 * deep)
+        yield Parked(key, kind, xy, verge.yaw(s) + float(askew[i] + turn[i])), row
 
 
 def _which(rule: spec.Parking, share: float, rng: np.random.Generator) -> tuple[str, Kind]:
@@ -83,11 +92,11 @@ def _which(rule: spec.Parking, share: float, rng: np.random.Generator) -> tuple[
     return f"{some[int(rng.integers(len(some)))]}~{int(rng.integers(LOOKS))}", kind
 
 
-def _free(one: Parked, edges: Edges, others: Sequence[Parked]) -> bool:
-    """Whether it stands off the roads, with room before and behind, and off the others."""
-    length, width, _ = asset(one.asset).size
-    long = rectangle(one.xy, one.yaw, length + 2 * CLEAR, 0.5 * width)
-    points = np.concatenate([outline(one.corners), outline(long)])
+def _free(one: Parked, row: F64, edges: Edges, others: Sequence[Parked], taken: Sequence[F64]) -> bool:
+    """Whether it stands off the roads, with room on either side of it in the row, and off all else."""
+    points = np.concatenate([outline(one.corners), outline(row)])
     if edges.beyond(points, CLOSE).min() < CLOSE:
         return False
-    return all(np.hypot(*(one.xy - other.xy)) > length for other in others)
+    reach = asset(one.asset).size[0]
+    near = [other.corners for other in others if np.hypot(*(one.xy - other.xy)) < 2 * reach]
+    return not any(overlap(one.corners, polygon) for polygon in (*near, *taken))

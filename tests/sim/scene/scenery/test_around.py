@@ -42,7 +42,7 @@ def test_scenery_leaves_the_luck_of_ground_and_traffic_alone(bare, world):
 
 def test_listed_things_come_first_and_ways_stay_free(bare, world):
     listed = (spec.Thing(kind="building", at=(20.0, 20.0)),)
-    scenery = spec.Scenery(preset="street", parking=spec.Parking(share=1.0))
+    scenery = spec.Scenery(preset="street", parking=(spec.Parking(share=1.0),))
     lush = bare.model_copy(update={"things": listed, "scenery": scenery})
     things, standing = around(lush, world.roads, world.terrain, np.random.SeedSequence(4))
     assert things[:1] == listed

@@ -129,7 +129,7 @@ def test_nothing_stands_on_any_winding_road(bend, twist, width, seed):
     low, high = road.centerline.min(0) - 15, road.centerline.max(0) + 15
     area = (float(low[0]), float(low[1]), float(high[0]), float(high[1]))
     ground = build_terrain(spec.Terrain(cell=1.0), [road], area, np.random.SeedSequence(1))
-    scenery = spec.Scenery(preset="country-road", parking=spec.Parking())
+    scenery = spec.Scenery(preset="country-road", parking=(spec.Parking(),))
     standing = parked(scenery, [road], np.random.SeedSequence(seed), area)
     things = scatter(scenery, [road], ground, area, np.random.SeedSequence(seed))
     for corners in [one.corners for one in standing] + [foot(thing) for thing in things]:
@@ -176,13 +176,15 @@ def test_what_is_strewn_has_its_density_wherever_the_area_ends():
 
 
 def test_parked_vehicles_stand_off_the_roads_and_apart():
-    vehicles = parked(spec.Scenery(parking=spec.Parking(vans=0.3, trucks=0.1, every=12)), ROADS, SEED, AREA)
+    vehicles = parked(
+        spec.Scenery(parking=(spec.Parking(vans=0.3, trucks=0.1, every=12),)), ROADS, SEED, AREA
+    )
     assert len(vehicles) > 10
     assert {v.kind for v in vehicles} >= {Kind.CAR, Kind.VAN}
     for v in vehicles:
         assert beyond(ROADS, outline(v.corners)).min() > 0
     assert not any(overlap(a.corners, b.corners) for a, b in combinations(vehicles, 2))
-    again = parked(spec.Scenery(parking=spec.Parking(vans=0.3, trucks=0.1, every=12)), ROADS, SEED, AREA)
+    again = parked(spec.Scenery(parking=(spec.Parking(vans=0.3, trucks=0.1, every=12),)), ROADS, SEED, AREA)
     assert [(v.asset, *v.xy, v.yaw) for v in vehicles] == [(v.asset, *v.xy, v.yaw) for v in again]
 
 
@@ -232,3 +234,24 @@ def test_impossible_rules_are_refused():
         spec.Parking(vans=0.7, trucks=0.7)
     with pytest.raises(ValidationError, match="preset"):
         spec.Scenery(preset="jungle")
+
+
+def test_vehicles_parked_across_show_nose_or_tail_and_stand_apart():
+    rules = (spec.Parking(share=1.0, across=True, gap=1.0, side="left"), spec.Parking(side="right"))
+    both = parked(spec.Scenery(parking=rules), ROADS, SEED, AREA)
+    alone = parked(spec.Scenery(parking=rules[:1]), ROADS, SEED, AREA)
+    assert 5 < len(alone) < len(both)
+    assert [one.asset for one in both[: len(alone)]] == [one.asset for one in alone]
+    for i, one in enumerate(both):
+        assert not any(overlap(one.corners, other.corners) for other in both[:i])
+    for one in alone:
+        off = np.sort(Edges(ROADS).beyond(one.corners))
+        assert off[1] < 1.4
+        assert off[3] > 3.0  # the other end
+    assert len({round(float(one.yaw) / (np.pi / 2)) % 4 for one in alone}) >= 2
+
+
+def test_one_rule_of_parking_is_a_list_of_one():
+    assert spec.Scenery(parking=None).parking == ()
+    assert spec.Scenery.model_validate({"parking": {"share": 0.4}}).parking == (spec.Parking(share=0.4),)
+    assert spec.Scenery.model_validate({"parking": [{"share": 0.4}, {}]}).parking[1] == spec.Parking()
