@@ -20,14 +20,14 @@ REFLECTIVITY = {Kind.ROAD: 0.1, Kind.SIDEWALK: 0.2, Kind.FIELD: 0.3}
 """Of the ground, diffuse, at 905 nm: asphalt, paving, grass and soil."""
 LEVEL = {
     Kind.ROAD: 0.235,
-    Kind.SIDEWALK: 0.39,
+    Kind.SIDEWALK: 0.36,
     Kind.FIELD: 0.45,
     Kind.VEGETATION: 0.36,
     Kind.TRUNK: 0.3,
     Kind.BUILDING: 0.24,
     Kind.WALL: 0.24,
     Kind.POLE: 0.3,
-    Kind.SIGN: 0.45,
+    Kind.SIGN: 0.48,
     Kind.THING: 0.25,
 }
 """Mean intensity head-on where it is not 0. With the zeros, and at the angles at which streets are seen,

@@ -13,7 +13,7 @@ from datmo.messages import Relief, Scan, Truth
 from scenarios import spec
 from sim.scan.bodies import Body, body
 from sim.scan.caster import Caster
-from sim.scan.effects.chain import sensing
+from sim.scan.effects.chain import lasers, sensing
 from sim.scan.embree import Mesh
 from sim.scan.gather import gather
 from sim.scan.luck import Luck
@@ -105,7 +105,8 @@ class Lidar:
         blind = own_body(self.pattern, sensor.body_mask)
         limits = calibrated.nearest, sensor.range
         self.caster = Caster(self.pattern, self._ground, static, limits, blind, bodies)
-        self._sense = sensing(sensor, self.pattern, blind, self._ground, limits, _child(seed, LASERS))
+        each = lasers(sensor, calibrated.focus, calibrated.rings, _child(seed, LASERS))
+        self._sense = sensing(sensor, self.pattern, blind, self._ground, limits, each)
         self._last: Returns | None = None
         self.milliseconds: dict[str, float] = {}
 

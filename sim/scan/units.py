@@ -13,6 +13,8 @@ from datmo.arrays import F64
 from datmo.errors import ScenarioError, nearest
 
 COLUMNS = ("laser", "elevation", "azimuth", "vertical_offset", "horizontal_offset")
+FOCUS = "focus"
+"""A column more, which a table may have."""
 FACTS = {"firings": 1.0, "encoder": 360.0, "nearest": 0.0, "farthest": 1.0}
 """What the header of a table must say, and the least it may be."""
 MOST_RINGS = 256  # the ring of a return is a uint8
@@ -41,6 +43,7 @@ class Unit:
         elevation: (L,) V [rad], falling.
         azimuth: (L,) correction, a = rotor + azimuth, counter-clockwise from above [rad].
         vertical_offset: (L,) v [m]. horizontal_offset: (L,) h [m], to the left of the beam.
+        focus: (L,) distance to which each receiver is focused [m], None where the table does not say.
         firings: of each laser in a second.
         encoder: positions in a turn at which the head's azimuth is read.
         nearest, farthest: what it measures [m]. source: of its table.
@@ -51,6 +54,7 @@ class Unit:
     azimuth: F64
     vertical_offset: F64
     horizontal_offset: F64
+    focus: F64 | None = None
     firings: int = 20833
     encoder: int = 4000
     nearest: float = 0.9
@@ -103,11 +107,11 @@ def read_unit(name: str, text: str) -> Unit:
     header = [line[1:].partition(":") for line in lines if line.startswith("#")]
     facts = {key.strip(): value.strip() for key, _, value in header}
     rows = [line for line in lines if not line.startswith("#")]
-    if not rows or tuple(rows[0].split(",")) != COLUMNS:
-        raise _wrong(
-            name, f"its columns are {rows[0] if rows else 'missing'}", f"must be {','.join(COLUMNS)}"
-        )
-    table = _numbers(name, rows[1:])
+    heads = tuple(rows[0].split(",")) if rows else ()
+    if heads not in (COLUMNS, (*COLUMNS, FOCUS)):
+        told = rows[0] if rows else "missing"
+        raise _wrong(name, f"its columns are {told}", f"must be {','.join(COLUMNS)}, and may end in {FOCUS}")
+    table = _numbers(name, rows[1:], len(heads))
     _check_lasers(name, table)
     table.setflags(write=False)
     number = {key: _fact(name, facts, key, least) for key, least in FACTS.items()}
@@ -117,6 +121,7 @@ def read_unit(name: str, text: str) -> Unit:
         azimuth=table[:, 2],
         vertical_offset=table[:, 3],
         horizontal_offset=table[:, 4],
+        focus=table[:, 5] if heads[-1] == FOCUS else None,
         firings=round(number["firings"]),
         encoder=round(number["encoder"]),
         nearest=number["nearest"],
@@ -125,16 +130,16 @@ def read_unit(name: str, text: str) -> Unit:
     )
 
 
-def _numbers(name: str, rows: list[str]) -> F64:
-    """The rows of a table (L, 5)."""
+def _numbers(name: str, rows: list[str], width: int) -> F64:
+    """The rows of a table (L, width)."""
     table = []
     for i, row in enumerate(rows, start=1):
         try:
             values = [float(value) for value in row.split(",")]
         except ValueError:
             values = []
-        if len(values) != len(COLUMNS) or not np.isfinite(values).all():
-            raise _wrong(name, f"row {i} is {row!r}", f"a row is {len(COLUMNS)} finite numbers")
+        if len(values) != width or not np.isfinite(values).all():
+            raise _wrong(name, f"row {i} is {row!r}", f"a row is {width} finite numbers")
         table.append(values)
     if not 1 <= len(table) <= MOST_RINGS:
         raise _wrong(name, f"it has {len(table)} lasers", f"a unit has 1 to {MOST_RINGS}")
@@ -162,8 +167,12 @@ def _check_lasers(name: str, table: F64) -> None:
         )
     if np.abs(elevation).max() >= STEEPEST or np.abs(table[:, 2]).max() > np.pi:
         raise _wrong(name, "an angle is beyond a quarter turn", "angles are in radians, not degrees")
-    if np.abs(table[:, 3:]).max() > 1.0:
-        raise _wrong(name, f"an offset is {np.abs(table[:, 3:]).max():g} m", "offsets are in metres, below 1")
+    if np.abs(table[:, 3:5]).max() > 1.0:
+        raise _wrong(
+            name, f"an offset is {np.abs(table[:, 3:5]).max():g} m", "offsets are in metres, below 1"
+        )
+    if table.shape[1] > len(COLUMNS) and table[:, 5].min() <= 0:
+        raise _wrong(name, f"a focus is {table[:, 5].min():g} m", "it is above 0")
 
 
 def _fact(name: str, facts: dict[str, str], key: str, least: float) -> float:

@@ -44,20 +44,20 @@ def _fall(
     blind: Bool,
     tables: tuple[F64, F64, F64, F64, F64],
     chance: tuple[F32, F32, F32, F32],
-    limits: tuple[float, float],
+    limits: tuple[float, float, float],
     codes: tuple[int, int, int],
     out: tuple[F32, F32, Bool, U8],
 ) -> None:
     """Put the particle or the fog that a ray sees in place of what it would have returned."""
     (powers, rain, snow, fog, fog_up_to), (drops, flakes, patches, place) = tables, chance
-    (nearest, farthest), (is_rain, is_snow, is_fog) = limits, codes
+    (nearest, farthest, faintest), (is_rain, is_snow, is_fog) = limits, codes
     scale = (len(powers) - 1) / np.log(powers[-1] / powers[0])
     for n in range(len(true)):
         if blind[n]:
             continue
         end = min(true[n], farthest)
         last = min(int(end / STEP), rain.shape[1] - 1)
-        behind = max(power[n], np.float32(FAINTEST)) if out[2][n] else FAINTEST
+        behind = max(float(power[n]), faintest) if out[2][n] else faintest
         p = min(max(int(np.ceil(scale * np.log(behind / powers[0]))), 0), len(powers) - 1)
         at, code = -1, 0
         for table, lucky, name in ((rain, drops[n], is_rain), (snow, flakes[n], is_snow)):
@@ -101,7 +101,7 @@ def add_weather(
             blind[rays],
             tables,
             (chance[0][rays], chance[1][rays], chance[2][rays], chance[3][rays]),
-            limits,
+            (*limits, FAINTEST),
             CODES,
             (returns.distance[rays], returns.intensity[rays], returns.hit[rays], returns.false[rays]),
         )

@@ -7,16 +7,15 @@ a fifth of its rays and a white truck at 70 m most of them, as in KITTI's object
 some 50, 76 of some 90), and flanks have the intensity of those in real sweeps (0.05 on average).
 
 Window glass throws light on or away and scatters next to none back. Its value is the one that makes the
-simulator's link budget (sim/scan/returns.py: half the returns lost where reflectance / range² is 2.3e-5 /
-m²) lose as many as a real HDL-64E: of the rays at the windows of two cars at 7-8 m in KITTI's odometry
-sequence 00, pillars and head rests included, 22 to 47 % come back, so of those at the panes alone about one
-in five.
+simulator's link budget (sim/scan/returns.py) lose as many as a real HDL-64E: of the rays at the windows of
+two cars at 7-8 m in KITTI's odometry sequence 00, pillars and head rests included, 22 to 47 % come back, so
+of those at the panes alone about one in five. They are rays of the upper block, focused far away.
 """
 
 from __future__ import annotations
 
 PAINT = (0.12, 0.07, 0.03, 0.09)  # white, silver, dark, bright colour
-GLASS = 1.4e-3
+GLASS = 8e-3
 TYRE = 0.06
 RIM = 0.12
 UNDERBODY = 0.05

@@ -8,6 +8,7 @@ import pytest
 from scenarios.spec import IDEAL, Noise
 from sim.scan.luck import Luck
 from sim.scan.returns import (
+    BLUR,
     DARK,
     DARKEST,
     DIM,
@@ -20,6 +21,7 @@ from sim.scan.returns import (
     SPECKLE,
     WEAK,
     ZERO,
+    Lasers,
     Returns,
     measure,
     response_of,
@@ -49,8 +51,17 @@ def even(distance: float, rho: float = 0.5) -> tuple[SimpleNamespace, SimpleName
     return hits, met
 
 
+def each(gain: np.ndarray, focus: float = 0.0) -> Lasers:
+    """Lasers of some gains, focused at a distance [m], 0 for none told."""
+    sharp = np.full(len(gain), 1 / focus if focus else 0.0, np.float32)
+    return Lasers(np.zeros(len(gain), np.float32), gain, sharp)
+
+
+EVEN = each(np.ones(64, np.float32))
+
+
 def reference(
-    hits: SimpleNamespace, met: SimpleNamespace, noise: Noise, alpha: float, gain: np.ndarray
+    hits: SimpleNamespace, met: SimpleNamespace, noise: Noise, alpha: float, lasers: Lasers
 ) -> tuple[np.ndarray, np.ndarray]:
     """The model in plain Python: distance and intensity of each ray."""
     luck = Luck(SEED)
@@ -63,10 +74,12 @@ def reference(
             continue
         power = max(float(met.reflectance[r]), DARKEST) / R**2 * np.exp(-2 * alpha * R)
         got = R + noise.range_std * np.sqrt(1 + WEAK / max(power, FAINTEST)) * float(error[r])
-        lost = noise.grazing and grazed[r] >= 1 / (1 + (FAINTEST / power) ** FADE)
+        gain, sharp = float(lasers.gain[r // COLUMNS]), float(lasers.sharp[r // COLUMNS])
+        focused = 1 / (1 + (BLUR * (1 / R - sharp)) ** 2) if sharp > 0 else 1.0
+        lost = noise.grazing and grazed[r] >= 1 / (1 + (FAINTEST / (power * focused)) ** FADE)
         if lost or not LIMITS[0] <= got <= LIMITS[1]:
             continue
-        mean = float(met.level[r]) * float(gain[r // COLUMNS])
+        mean = float(met.level[r]) * gain
         if noise.intensity:
             dark = DIM + (1 - DIM) / (1 + (DARK / R) ** 5)
             mean = 0.0 if zero[r] < dark else mean + SCATTER * float(scatter[r])
@@ -76,11 +89,12 @@ def reference(
 
 @pytest.mark.parametrize("noise", [Noise(), IDEAL, Noise(drop_out=0.2, intensity=False)])
 @pytest.mark.parametrize("alpha", [0.0, 0.01])
-def test_the_kernel_is_the_model(noise: Noise, alpha: float) -> None:
+@pytest.mark.parametrize("focus", [0.0, 12.0])
+def test_the_kernel_is_the_model(noise: Noise, alpha: float, focus: float) -> None:
     hits, met = street()
-    gain = response_of(noise.response, RINGS, np.random.default_rng(3))
-    got = measure(hits, met, noise, alpha, LIMITS, gain, Luck(SEED))
-    distance, intensity = reference(hits, met, noise, alpha, gain)
+    lasers = each(response_of(noise.response, RINGS, np.random.default_rng(3)), focus)
+    got = measure(hits, met, noise, alpha, LIMITS, lasers, Luck(SEED))
+    distance, intensity = reference(hits, met, noise, alpha, lasers)
     np.testing.assert_array_equal(got.hit, distance > 0)
     np.testing.assert_allclose(got.distance, distance, rtol=1e-6)
     np.testing.assert_allclose(got.intensity, intensity, atol=1e-6)
@@ -91,7 +105,7 @@ def test_the_kernel_is_the_model(noise: Noise, alpha: float) -> None:
 
 def test_the_noise_of_range_grows_as_photons_grow_few() -> None:
     for R, rho in ((3.0, 0.5), (12.0, 0.3), (35.0, 0.4)):
-        got = measure(*even(R, rho), Noise(drop_out=0), 0.0, LIMITS, np.ones(64, np.float32), Luck(SEED))
+        got = measure(*even(R, rho), Noise(drop_out=0), 0.0, LIMITS, EVEN, Luck(SEED))
         error = got.distance[got.hit] - R
         want = 0.0075 * np.sqrt(1 + WEAK * R**2 / rho)
         assert error.std() == pytest.approx(want, rel=0.03)
@@ -102,13 +116,13 @@ def test_what_is_dark_and_far_is_lost() -> None:
     """Half of the returns at the faintest power."""
     R = 40.0
     noise = IDEAL.model_copy(update={"grazing": True})
-    got = measure(*even(R, FAINTEST * R**2), noise, 0.0, LIMITS, np.ones(64, np.float32), Luck(SEED))
+    got = measure(*even(R, FAINTEST * R**2), noise, 0.0, LIMITS, EVEN, Luck(SEED))
     assert got.hit.mean() == pytest.approx(0.5, abs=0.01)
 
 
 def test_intensity_scatters_about_its_level_times_the_lasers_gain() -> None:
     gain = np.repeat(np.array([0.5, 1.0, 1.5, 1.0], np.float32), 2)
-    got = measure(*even(5.0), Noise(drop_out=0), 0.0, LIMITS, gain, Luck(SEED))
+    got = measure(*even(5.0), Noise(drop_out=0), 0.0, LIMITS, each(gain), Luck(SEED))
     rows = got.intensity.reshape(8, -1)
     for ring, factor in enumerate(gain):
         seen = rows[ring][rows[ring] > 0]
@@ -130,7 +144,18 @@ def test_a_ray_has_its_own_luck_whatever_the_others_meet() -> None:
     moved = SimpleNamespace(distance=hits.distance.copy())
     moved.distance[:100] = np.inf
     gain = np.ones(RINGS, np.float32)
-    one, other = (measure(h, met, Noise(), 0.0, LIMITS, gain, Luck(SEED)) for h in (hits, moved))
+    one, other = (measure(h, met, Noise(), 0.0, LIMITS, each(gain), Luck(SEED)) for h in (hits, moved))
     assert isinstance(one, Returns)
     np.testing.assert_array_equal(one.distance[100:], other.distance[100:])
     assert not other.hit[:100].any()
+
+
+def test_a_receiver_sees_best_at_its_focus() -> None:
+    """Half the returns are lost where power times focus is the faintest."""
+    noise = IDEAL.model_copy(update={"grazing": True})
+    for focus, R in ((24.0, 8.0), (9.5, 8.0), (24.0, 50.0)):
+        sharp = 1 / (1 + (BLUR * (1 / R - 1 / focus)) ** 2)
+        dark = FAINTEST * R**2 / sharp
+        lasers = each(np.ones(64, np.float32), focus)
+        got = measure(*even(R, dark), noise, 0.0, LIMITS, lasers, Luck(SEED))
+        assert got.hit.mean() == pytest.approx(0.5, abs=0.01)

@@ -20,11 +20,11 @@ from sim.scan.effects.air import (
 )
 from sim.scan.effects.weather import add_weather
 from sim.scan.luck import Luck
-from sim.scan.returns import FADE, FAINTEST, Returns, measure
+from sim.scan.returns import FADE, FAINTEST, Lasers, Returns, measure
 
 LIMITS = (0.9, 80.0)
 M = 40_000
-EVEN = np.ones(64, np.float32)
+EVEN = Lasers(np.zeros(64, np.float32), np.ones(64, np.float32), np.zeros(64, np.float32))
 """Lasers that answer alike."""
 
 
