@@ -56,7 +56,7 @@ def _assets() -> None:
     from rich.table import Table
 
     from eval.console import stdout
-    from sim.picture.gallery_list import catalogue
+    from sim.picture.gallery.listing import catalogue
 
     table = Table(box=None, pad_edge=False, header_style="bold")
     for name in ("group", "name", "kind", "length × width × height [m]"):

@@ -10,7 +10,7 @@ import typer
 from eval.commands import options as o
 
 if TYPE_CHECKING:
-    from sim.picture.gallery_list import Row
+    from sim.picture.gallery.listing import Row
 
 ABOUT = {
     "vehicles": "Colours tell the kind; darker is what reflects less, such as windows. `~17` after a name\n"
@@ -37,12 +37,12 @@ def gallery(
     \b
     Examples:
       datmo gallery --force
-      datmo gallery --out /tmp/gallery
+      datmo gallery --out gallery
     """
     from eval import console
     from eval.output import refuse_existing, write_file, writing_folder
     from sim.picture.gallery import SHEETS, sheets
-    from sim.picture.gallery_list import catalogue
+    from sim.picture.gallery.listing import catalogue
 
     page = out.with_suffix(".md")
     for path in (out, page):

@@ -22,10 +22,10 @@ from sim.scan.pattern import pattern
 from sim.scan.returns import Returns
 from sim.scan.surface import surfaces
 from sim.scan.things import place
+from sim.scan.truth import relief, truth_of
 from sim.scan.units import Unit, unit
 from sim.scene.motion import Poses
 from sim.scene.terrain import Terrain
-from sim.truth import relief, truth_of
 
 STAGES = ("cast", "surfaces", "returns", "truth")
 LASERS = 2**31
@@ -161,5 +161,5 @@ class Lidar:
         return self._last.distance.reshape(shape).copy(), self._last.intensity.reshape(shape).copy()
 
     def relief(self, T_world_sensor: F64, xy: F64) -> Relief:
-        """True ground at places (g, 2) [m, sensor], see `sim.truth.relief`."""
+        """True ground at places (g, 2) [m, sensor], see `sim.scan.truth.relief`."""
         return relief(self._terrain, self._ground, T_world_sensor, self.eye, xy)

@@ -7,7 +7,7 @@ import pytest
 from eval.cli import call
 from eval.commands.gallery import text
 from sim.picture import gallery
-from sim.picture.gallery_list import catalogue
+from sim.picture.gallery.listing import catalogue
 from sim.scene.scenery.kinds import SORTS
 
 DOCS = Path(__file__).parents[2] / "docs"

@@ -9,12 +9,12 @@ import pytest
 from PIL import Image
 
 from datmo.messages import Kind
-from sim.picture import gallery
-from sim.picture.gallery_cloud import HEIGHT, NEAR, NOISE, cloud
-from sim.picture.gallery_exhibits import persons, things, vehicles
-from sim.picture.gallery_list import catalogue
-from sim.picture.gallery_scenes import presets, scene
-from sim.picture.gallery_view import Camera, camera, colours, mesh_view, splat
+from sim.picture.gallery import sheet as gallery
+from sim.picture.gallery.cloud import HEIGHT, NEAR, NOISE, cloud
+from sim.picture.gallery.exhibits import persons, things, vehicles
+from sim.picture.gallery.listing import catalogue
+from sim.picture.gallery.scenes import presets, scene
+from sim.picture.gallery.view import Camera, camera, colours, mesh_view, splat
 from sim.picture.grounds import ground_names
 from sim.scene import assets
 from sim.scene.scenery.kinds import SORTS

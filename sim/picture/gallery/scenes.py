@@ -10,8 +10,8 @@ from datmo.arrays import F32, F64, I32, U8
 from datmo.messages import Kind
 from scenarios import spec
 from scenarios.spec.scenery import PRESETS
-from sim.picture.gallery_cloud import HEIGHT, NOISE, hdl64
-from sim.picture.gallery_view import colours, looking, mesh_view, splat
+from sim.picture.gallery.cloud import HEIGHT, NOISE, hdl64
+from sim.picture.gallery.view import colours, looking, mesh_view, splat
 from sim.picture.grounds import HALF, roads
 from sim.picture.terrain import COLOURS
 from sim.scan.embree import Mesh

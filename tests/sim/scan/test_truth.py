@@ -7,8 +7,8 @@ from datmo.arrays import F64
 from datmo.messages import Kind
 from scenarios import spec
 from sim.scan.embree import Mesh
+from sim.scan.truth import ground_below, relief
 from sim.scene.terrain import Terrain, build_terrain
-from sim.truth import ground_below, relief
 
 EYE = np.array([0.0, 0.0, 0.2])
 

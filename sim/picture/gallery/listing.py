@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from datmo.messages import Kind
-from sim.picture.gallery_exhibits import Exhibit, persons, vehicles
+from sim.picture.gallery.exhibits import Exhibit, persons, vehicles
 from sim.picture.grounds import ground, ground_names
 from sim.scene.scenery.kinds import SORTS, drawn, form
 

@@ -9,10 +9,10 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from datmo.arrays import F64, U8
-from sim.picture.gallery_cloud import cloud, distance
-from sim.picture.gallery_exhibits import Exhibit, persons, things, vehicles
-from sim.picture.gallery_scenes import pictures, presets
-from sim.picture.gallery_view import camera, colours, mesh_view, splat
+from sim.picture.gallery.cloud import cloud, distance
+from sim.picture.gallery.exhibits import Exhibit, persons, things, vehicles
+from sim.picture.gallery.scenes import pictures, presets
+from sim.picture.gallery.view import camera, colours, mesh_view, splat
 from sim.picture.grounds import ground, ground_names
 from sim.picture.terrain import terrain_view
 
