@@ -32,7 +32,8 @@ class Datmo:
         self._stamp = -np.inf
 
     def reset(self) -> None:
-        """Forget every track; the next scan begins a new sequence."""
+        """Forget every track and what was learned; the next scan begins a new sequence."""
+        self.ground.reset()
         self.tracker.reset()
         self._stamp = -np.inf
 

@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 
 from datmo.arrays import F32, F64, I32, Array, Bool
 from datmo.bins import bin_edges
 from datmo.errors import ConfigError, MessageError, nearest
-from datmo.ground import process
 from datmo.ground.coarse import Sheet
-from datmo.ground.config import GroundConfig, Method
+from datmo.ground.config import GroundConfig
 from datmo.ground.grid import PolarGrid, candidates, locate
 from datmo.ground.label import LimitRules, cell_means, label_points, limits
+from datmo.ground.methods import METHODS, regression
 from datmo.ground.plane import robust_plane
+from datmo.ground.regression import Cells, Heights
 from datmo.ground.seeds import expect_ground
 from datmo.ground.surface import PolarSurface, gaps
 from datmo.messages import Ground
-
-METHODS: tuple[str, ...] = get_args(Method)
 
 
 def segment_ground(
@@ -61,7 +60,12 @@ def _rows(name: str, value: Any, dtype: Any, shape: tuple[int | None, ...]) -> A
 
 
 class GroundSegmenter:
-    """The ground stage of the pipeline; holds its grid, nothing of a frame."""
+    """The ground stage of the pipeline, one sensor through time.
+
+    Attributes:
+        learned: hyper-parameters of the last frame, and what they were learned from; the next frame
+            starts from them.
+    """
 
     def __init__(self, config: GroundConfig | None = None) -> None:
         self.config = config or GroundConfig()
@@ -71,6 +75,12 @@ class GroundSegmenter:
         self._limits = LimitRules(
             c.point_height, c.point_range, c.point_slope, c.point_most, c.point_below, c.foot_factor
         )
+        self._regression = regression(self._grid, c)
+        self.learned = self._regression.start()
+
+    def reset(self) -> None:
+        """Forget what was learned; the next scan begins a new sequence."""
+        self.learned = self._regression.start()
 
     def step(self, points: Array, keep: Bool | None = None) -> Ground:
         """The ground of one scan. Neither the order of the points nor copies of them matter.
@@ -93,11 +103,9 @@ class GroundSegmenter:
         plane = self._plane(points, cell, radius)
         cells = candidates(points, cell, radius, plane, grid, config.multipath)
         expected = expect_ground(cells, grid, config)
-        hyper = process.start(config)
-        data = process.describe(cells.r, expected.e, expected.usable, grid.nodes, config)
-        member, noise = process.grow(data, expected.seed, expected.doubtful, hyper, config)
-        data = process.narrow(data, member)
-        surface = self._surface(plane, expected.sheet, data, noise, hyper)
+        lowest = Cells(cells.r, expected.e, expected.usable)
+        member, heights = self._regression.grow(lowest, expected.seed, expected.doubtful, self.learned)
+        surface = self._surface(plane, expected.sheet, member, heights)
         x, y, z = points.T.astype(float)
         height, std = surface.at(x, y, azimuth, radius)
         is_ground = self._label(z - height, cell, surface)
@@ -117,20 +125,17 @@ class GroundSegmenter:
         near = cells.present & (cells.r < self.config.plane_radius)
         return robust_plane(cells.xyz[near], self.config.start_height)
 
-    def _surface(
-        self, plane: F64, sheet: Sheet, data: process.Data, noise: F64, hyper: process.Hyper
-    ) -> PolarSurface:
-        """h0 plus the processes, joined.
+    def _surface(self, plane: F64, sheet: Sheet, seen: Bool, heights: Heights) -> PolarSurface:
+        """h0 plus the regression's heights, joined.
 
-        The deviation grows away from what was seen, and holds the part of σ_n that the sensor's own
-        noise does not explain: that is roughness within the cells, and so height.
+        The deviation grows away from the cells (M, N) that were `seen`, and holds the part of the
+        noise that the sensor's own does not explain: that is roughness within the cells, and so height.
         """
         grid, config = self._grid, self.config
-        mean, var = process.fit(data, noise, grid.nodes, hyper)
-        mean += sheet(grid.xy(grid.nodes)).reshape(mean.shape)
-        away = np.minimum(config.drift * gaps(data.use, grid.centers, grid.nodes), config.most_std)
-        rough = max(hyper.sn**2 - config.noise_floor**2, 0.0)
-        std = np.sqrt(var + rough + away**2)
+        mean = heights.mean + sheet(grid.xy(grid.nodes)).reshape(heights.mean.shape)
+        away = np.minimum(config.drift * gaps(seen, grid.centers, grid.nodes), config.most_std)
+        rough = np.maximum(heights.noise - config.noise_floor**2, 0.0)
+        std = np.sqrt(heights.var + rough + away**2)
         # All segments share the place of their first node, the sensor's foot.
         mean[:, 0], std[:, 0] = mean[:, 0].mean(), std[:, 0].mean()
         return PolarSurface(plane, grid.nodes, mean, std)
@@ -139,7 +144,7 @@ class GroundSegmenter:
         self, over: F64, radius: F64, cell: I32, is_ground: Bool, surface: PolarSurface, sheet: Sheet
     ) -> PolarSurface:
         """The surface through the mean of each cell's ground points, hyper-parameters learned."""
-        grid, config = self._grid, self.config
+        grid = self._grid
         count, mean_over, mean_r = cell_means(over, radius, cell, is_ground, grid.shape[0] * grid.shape[1])
         use = (count > 0).reshape(grid.shape)
         r = np.where(use, mean_r.reshape(grid.shape), grid.centers)
@@ -147,6 +152,5 @@ class GroundSegmenter:
         a, b, c = surface.plane
         height = surface(xy)[0] - (a * xy[:, 0] + b * xy[:, 1] + c) - sheet(xy)
         y = np.where(use, mean_over.reshape(grid.shape) + height.reshape(grid.shape), 0)
-        data = process.describe(r, y, use, grid.nodes, config)
-        hyper = process.learn(data, config) if config.learn else process.start(config)
-        return self._surface(surface.plane, sheet, data, np.full(grid.shape, hyper.sn**2), hyper)
+        heights, self.learned = self._regression.fit(Cells(r, y, use), self.learned)
+        return self._surface(surface.plane, sheet, use, heights)
