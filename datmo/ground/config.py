@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from datmo import bins as shared
 
-Method = Literal["z", "z-se"]
+Method = Literal["default", "z", "z-se"]
 
 
 class GroundConfig(BaseModel):
@@ -16,7 +16,9 @@ class GroundConfig(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
-    method: Method = Field("z", description="z: non-stationary kernel; z-se: stationary")
+    method: Method = Field(
+        "default", description="default: one tied field; z: non-stationary kernel; z-se: stationary"
+    )
     segments: int = Field(shared.SEGMENTS, ge=12, le=720, description="M, sectors of the polar grid")
     bins: int = Field(shared.BINS, ge=10, le=400, description="N, bins of a segment")
     blind: float = Field(shared.BLIND, ge=0, le=10, description="inner edge of the grid [m]")
@@ -26,10 +28,11 @@ class GroundConfig(BaseModel):
 
     plane_radius: float = Field(25.0, gt=1, description="points that the local slope is taken from [m]")
     coarse: bool = Field(True, description="whether a coarse 2-D surface follows the plane")
-    coarse_cell: float = Field(4.0, ge=1, le=20, description="spacing of the coarse surface's knots [m]")
     coarse_noise: float = Field(0.1, gt=0, description="scatter about the coarse surface [m]")
-    coarse_bend: float = Field(0.25, gt=0, description="std of its second difference over one cell [m]")
-    coarse_slope: float = Field(2.0, gt=0, description="std of its first difference over one cell [m]")
+    coarse_bend: float = Field(
+        0.9, gt=0, description="τ, its second difference over h has a std of τ h [m/m]"
+    )
+    coarse_slope: float = Field(2.0, gt=0, description="ς, std of its first differences, whatever h [m]")
     asymmetric: bool = Field(True, description="points above pull less than points below")
     reject: bool = Field(True, description="cells of large vertical extent count little")
     connect: bool = Field(True, description="cells that do not connect to the ground are left out")
@@ -49,7 +52,7 @@ class GroundConfig(BaseModel):
     noise_std: float = Field(0.03, gt=0, description="σ_n, if not learned [m]")
     noise_floor: float = Field(0.01, gt=0, description="smallest σ_n, the range noise [m]")
     learn: bool = Field(True, description="maximum likelihood of a or ℓ, σ_f, σ_n once a frame")
-    drift: float = Field(0.03, ge=0, description="std gained per metre from what was seen [m/m]")
+    drift: float = Field(0.002, ge=0, description="least std gained per metre from what was seen [m/m]")
     most_std: float = Field(1.0, gt=0, description="largest std from that [m]")
 
     seed_height: float = Field(0.3, gt=0, description="T_s, seeds lie this near the expected ground [m]")

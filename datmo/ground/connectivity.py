@@ -22,22 +22,24 @@ def _root(parent: I32, i: int) -> int:
 
 
 @numba.njit(cache=True, nogil=True)
-def _link(parent: I32, a: int, b: int, d: float, dz: float) -> None:
-    """Join the sets of cells a, b if the step dz over the distance d is one that ground takes."""
-    if abs(dz) <= min(STEP + STEP_SLOPE * d, STEP_MOST):
+def _link(parent: I32, a: int, b: int, d: float, de: float, dz: float) -> None:
+    """Join the sets of cells a, b if the steps de, dz over the distance d are such as ground takes."""
+    most = STEP + STEP_SLOPE * d
+    if abs(dz) <= most and abs(de) <= min(most, STEP_MOST):
         a, b = _root(parent, a), _root(parent, b)
         parent[max(a, b)] = min(a, b)
 
 
 @numba.njit(cache=True, nogil=True)
-def components(r: F64, e: F64, low: Bool) -> I32:
+def components(r: F64, e: F64, z: F64, low: Bool) -> I32:
     """Component (M, N) of each low cell, named by its first cell; -1 where not low.
 
     Neighbours are the next low cell outwards within reach, and cells of the next segment at most
-    two bins off; they link when |Δe| <= 0.15 + 0.35 d.
+    two bins off; they link when |Δz| <= 0.15 + 0.35 d and |Δe| is that too and at most 0.3.
 
     Args:
-        r: (M, N) range of the candidate [m]. e: (M, N) height over the expected ground [m].
+        r: (M, N) range of the candidate [m]. e: (M, N) height over the expected ground, and z: over
+        the plane [m].
     """
     M, N = r.shape
     parent = np.arange(M * N).astype(np.int32)
@@ -48,13 +50,20 @@ def components(r: F64, e: F64, low: Bool) -> I32:
             if not low[m, b]:
                 continue
             if last >= 0 and r[m, b] - r[m, last] <= REACH + REACH_SLOPE * r[m, b]:
-                _link(parent, m * N + last, m * N + b, r[m, b] - r[m, last], e[m, b] - e[m, last])
+                _link(
+                    parent,
+                    m * N + last,
+                    m * N + b,
+                    r[m, b] - r[m, last],
+                    e[m, b] - e[m, last],
+                    z[m, b] - z[m, last],
+                )
             last = b
             o = (m + 1) % M
             for c in range(max(b - SIDE, 0), min(b + SIDE + 1, N)):
                 if low[o, c]:
                     d = np.hypot(r[m, b] - r[o, c], width * r[m, b])
-                    _link(parent, m * N + b, o * N + c, d, e[m, b] - e[o, c])
+                    _link(parent, m * N + b, o * N + c, d, e[m, b] - e[o, c], z[m, b] - z[o, c])
     label = np.full((M, N), -1, np.int32)
     for i in range(M * N):
         if low.flat[i]:
@@ -62,21 +71,21 @@ def components(r: F64, e: F64, low: Bool) -> I32:
     return label
 
 
-def connected(r: F64, label: I32) -> Bool:
-    """Cells (M, N) of the ground's components: those of at least 30 cells that reach within 20 m of
-    the sensor, or without any the largest one.
+def connected(r: F64, label: I32, area: F64) -> Bool:
+    """Cells (M, N) of the ground's components: those of more than a car's area that reach within 20 m
+    of the sensor, or without any the largest one.
 
     Args:
-        r: (M, N) [m]. label: (M, N) of `components`.
+        r: (M, N) [m]. label: (M, N) of `components`. area: (N,) of a cell in each bin [m²].
     """
     low = label >= 0
     names, at = np.unique(label[low], return_inverse=True)
-    count = np.bincount(at, minlength=len(names))
+    size = np.bincount(at, np.broadcast_to(area, label.shape)[low], len(names))
     nearest = np.full(len(names), np.inf)
     np.minimum.at(nearest, at, r[low])
-    ground = (nearest < NEAR) & (count >= LARGE_CELLS)
+    ground = (nearest < NEAR) & (size >= LARGE_AREA)
     if len(names) and not ground.any():
-        ground[np.argmax(count)] = True
+        ground[np.argmax(size)] = True
     kept = np.zeros(label.shape, bool)
     kept[low] = ground[at]
     return kept

@@ -8,10 +8,10 @@ import numba
 import numpy as np
 
 from datmo.arrays import F64, I32, I64, Bool
-from datmo.ground.surface import PolarSurface
+from datmo.ground.grid import Located
 
 FOOT_LOW, FOOT_HIGH, FOOT_CELLS = 0.3, 2.5, 2
-UNIT = 1e-6
+UNITS = 1e6
 
 
 @dataclass(frozen=True)
@@ -60,34 +60,81 @@ def near_surface(e: F64, cell: I32, above: F64, below: F64) -> Bool:
     return out
 
 
-@numba.njit(cache=True, nogil=True)
-def cell_means(e: F64, radius: F64, cell: I32, ground: Bool, cells: int) -> tuple[I64, F64, F64]:
-    """Number, mean height over the surface and mean range of the ground points of each cell.
+@dataclass(frozen=True)
+class CellMeans:
+    """Means of the ground points of each cell, (M, N) arrays; without any the middle of the cell, at 0.
 
-    Summed in whole micrometres: exact, so no order of the points decides.
+    Attributes:
+        use: whether there are any. over: height over the surface [m]. r: range [m]. azimuth: in segments.
+        noise: variance of `over` [m²], by the scatter within cells of a range and the number of points.
     """
-    count, se, sr = np.zeros(cells, np.int64), np.zeros(cells, np.int64), np.zeros(cells, np.int64)
+
+    use: Bool
+    over: F64
+    r: F64
+    azimuth: F64
+    noise: F64
+
+
+@numba.njit(cache=True, nogil=True)
+def _cell_sums(e: F64, azimuth: F64, radius: F64, cell: I32, ground: Bool, cells: int) -> I64:
+    """(5, cells): number, Σ height, Σ height², Σ range and Σ azimuth of each cell's ground points.
+
+    In whole micrometres (square millimetres; millionths of a segment): exact, so no order of the
+    points decides.
+    """
+    out = np.zeros((5, cells), np.int64)
     for i in range(len(e)):
         c = cell[i]
         if c >= 0 and ground[i]:
-            count[c] += 1
-            se[c] += np.int64(np.rint(e[i] / UNIT))
-            sr[c] += np.int64(np.rint(radius[i] / UNIT))
-    some = np.maximum(count, 1)
-    return count, se * UNIT / some, sr * UNIT / some
+            out[0, c] += 1
+            out[1, c] += np.int64(np.rint(e[i] * UNITS))
+            out[2, c] += np.int64(np.rint(e[i] * e[i] * UNITS))
+            out[3, c] += np.int64(np.rint(radius[i] * UNITS))
+            out[4, c] += np.int64(np.rint((azimuth[i] - np.floor(azimuth[i])) * UNITS))
+    return out
 
 
-def limits(surface: PolarSurface, centers: F64, rules: LimitRules) -> F64:
+def cell_means(located: Located, e: F64, ground: Bool, least_noise: float) -> CellMeans:
+    """The means of the cells' ground points.
+
+    Args:
+        e: (n,) height over the surface [m]. ground: (n,). least_noise: variance of a mean's error [m²].
+    """
+    grid = located.grid
+    M, N = grid.shape
+    sums = _cell_sums(e, located.azimuth, located.radius, located.cell, ground, M * N).reshape(5, M, N)
+    n = sums[0]
+    over, square, r, azimuth = sums[1:] / (UNITS * np.maximum(n, 1))
+    # Scatter within cells of one bin: each cell has few points, a ring of cells has many.
+    spread = (np.maximum(square - over**2, 0) * n).sum(0) / np.maximum((n - 1).clip(0).sum(0), 1)
+    middle = np.arange(M)[:, None] + np.where(n > 0, azimuth, 0.5)
+    noise = np.broadcast_to(spread, (M, N)) / np.maximum(n, 1) + least_noise
+    return CellMeans(n > 0, over, np.where(n > 0, r, grid.centers), middle, noise)
+
+
+@numba.njit(cache=True, nogil=True)
+def _limits(mean: F64, nodes: F64, start: float, by_range: float, by_slope: float, most: float) -> F64:
+    M, N = len(mean), len(nodes) - 2
+    out, width = np.empty((M, N)), 4 * np.pi / M
+    for m in range(M):
+        before, after = mean[m - 1 if m > 0 else M - 1], mean[m + 1 if m + 1 < M else 0]
+        for b in range(N):
+            along = (mean[m, b + 2] - mean[m, b]) / (nodes[b + 2] - nodes[b])
+            across = (after[b + 1] - before[b + 1]) / (width * nodes[b + 1])
+            slope = np.hypot(along, across)
+            out[m, b] = min(start + by_range * nodes[b + 1] + by_slope * slope, most)
+    return out
+
+
+def limits(height: F64, nodes: F64, rules: LimitRules) -> F64:
     """Threshold ζ_r (M, N) of each cell [m]: at the sensor + with range + with the slope of the
     surface over its plane, up to the most.
 
     Args:
-        centers: (N,) middles of the bins, `surface.nodes` without its ends [m].
+        height: (M, N + 2) of the surface over its plane at the nodes (N + 2,) [m].
     """
-    along = np.gradient(surface.mean, surface.nodes, axis=1)[:, 1:-1]
-    across = (np.roll(surface.mean, -1, 0) - np.roll(surface.mean, 1, 0))[:, 1:-1]
-    slope = np.hypot(along, across / (4 * np.pi / len(surface.mean) * centers))
-    return np.asarray(np.minimum(rules.start + rules.by_range * centers + rules.by_slope * slope, rules.most))
+    return np.asarray(_limits(height, nodes, rules.start, rules.by_range, rules.by_slope, rules.most))
 
 
 def label_points(over: F64, cell: I32, limit: F64, rules: LimitRules) -> Bool:

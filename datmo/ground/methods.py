@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from datmo.ground.config import GroundConfig
+from datmo.ground.field import Field
 from datmo.ground.grid import PolarGrid
 from datmo.ground.process import LineLengths, OneLength
 from datmo.ground.regression import Regression
 
 REGRESSIONS: dict[str, Callable[[PolarGrid, GroundConfig], Regression]] = {
+    "default": Field,
     "z": LineLengths,
     "z-se": OneLength,
 }

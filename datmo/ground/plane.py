@@ -71,4 +71,4 @@ def robust_plane(xyz: F64, start_height: float) -> F64:
         plane[2] = np.quantile(xyz[:, 2], BELOW)
     if len(xyz) < 3:
         return plane
-    return np.asarray(_settle(xyz, plane, np.geomspace(1.0, 0.05, 12), np.geomspace(0.4, 0.1, 8)))
+    return np.asarray(_settle(xyz, plane, np.geomspace(1.0, 0.05, 7), np.geomspace(0.4, 0.1, 4)))

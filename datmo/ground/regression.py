@@ -17,12 +17,15 @@ class Cells:
     """One height a cell of the polar grid, (M, N) arrays; values mean nothing where not `use`.
 
     Attributes:
-        r: range [m]. y: height over h0 [m]. use: which cells count.
+        r: range [m]. y: height over h0 [m]. use: which cells count. azimuth: in segments, None: all in the
+        middle of theirs. noise: variance of y's error [m²], None: not known.
     """
 
     r: F64
     y: F64
     use: Bool
+    azimuth: F64 | None = None
+    noise: F64 | None = None
 
     def narrow(self, use: Bool) -> Cells:
         """The same with only `use` (M, N) counting."""

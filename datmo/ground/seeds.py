@@ -8,14 +8,16 @@ import numpy as np
 
 from datmo.arrays import F64, Bool
 from datmo.ground import connectivity
-from datmo.ground.coarse import Sheet, SheetRules, flat_sheet, settle
 from datmo.ground.config import GroundConfig
 from datmo.ground.grid import Candidates, PolarGrid
+from datmo.ground.lattice import corners, evaluate, prior
+from datmo.ground.sheet import Sheet, coarse_lattice, flat_sheet, settle
 
 EXTENT, EXTENT_SLOPE = 0.25, 0.6
 OBSTACLE_WEIGHT = 0.05
 LOW = 0.5
 BLOCK = 3
+RIDGE = 3.0
 
 
 @dataclass(frozen=True)
@@ -48,35 +50,58 @@ def block_lowest(height: F64, present: Bool, block: int) -> Bool:
     return np.asarray(whole[:M, :N] & present)
 
 
-def expect_ground(cells: Candidates, grid: PolarGrid, config: GroundConfig) -> Expected:
-    """The expected ground and the seeds.
+class GroundExpectation:
+    """Finds the expected ground and the seeds; holds the lattice and its prior, nothing of a frame."""
 
-    A first sheet goes through the lowest candidates of blocks of cells. Low cells that connect to
-    the ground about the sensor carry the next; components that come to lie on it join for the last.
-    """
-    sheet = flat_sheet(config.radius, config.coarse_cell)
-    steep = cells.present & (cells.extent > EXTENT + EXTENT_SLOPE * np.diff(grid.edges)) & config.reject
-    weight = np.where(steep, OBSTACLE_WEIGHT, 1.0)
-    rules = SheetRules(config.coarse_noise, config.coarse_bend, config.coarse_slope, config.asymmetric)
-    xy = cells.xyz[..., :2]
+    def __init__(self, grid: PolarGrid, config: GroundConfig) -> None:
+        self._grid, self.config = grid, config
+        self._flat = flat_sheet(coarse_lattice(grid.segments, grid.centers))
+        c = config
+        self._prior = prior(self._flat.lattice, c.coarse_bend, c.coarse_slope, RIDGE, c.coarse_noise)
+        self._steep = EXTENT + EXTENT_SLOPE * np.diff(grid.edges)
+        self._size = np.hypot(np.diff(grid.edges), grid.centers * 2 * np.pi / grid.segments)
 
-    def draw(use: Bool, start: Sheet, first: bool) -> Sheet:
-        return (
-            settle(start, xy[use], cells.height[use], weight[use], rules, first) if config.coarse else start
-        )
+    def __call__(self, cells: Candidates, plane: F64) -> Expected:
+        """The expected ground of one scan.
 
-    def over(sheet: Sheet) -> F64:
-        return np.where(cells.present, cells.height - sheet(xy.reshape(-1, 2)).reshape(grid.shape), 0)
+        A first sheet goes through the lowest candidates of blocks of cells. Low cells that connect to
+        the ground about the sensor carry the next; components that come to lie on it join for the last.
 
-    sheet = draw(block_lowest(cells.height, cells.present, BLOCK), sheet, True)
-    usable = cells.present
-    if config.connect:
-        label = connectivity.components(cells.r, over(sheet), cells.present & (over(sheet) < LOW))
-        usable = connectivity.connected(cells.r, label)
+        Args:
+            plane: (3,) z = a x + b y + c, the local slope.
+        """
+        grid, config, flat = self._grid, self.config, self._flat
+        height = cells.above(plane)
+        extent = cells.extent - np.hypot(plane[0], plane[1]) * self._size
+        steep = cells.present & (extent > self._steep) & config.reject
+        weight = np.where(steep, OBSTACLE_WEIGHT, 1.0).ravel()
+        lattice = flat.lattice
+        places = corners(cells.azimuth.ravel(), cells.r.ravel(), lattice.lines, grid.segments, lattice.radii)
+
+        def draw(use: Bool, start: Sheet, first: bool) -> Sheet:
+            if not config.coarse:
+                return start
+            w = weight * use.ravel()
+            return settle(
+                start, height.ravel(), w, places, self._prior, config.coarse_noise, config.asymmetric, first
+            )
+
+        def over(sheet: Sheet) -> F64:
+            e = height - evaluate(sheet.f, *places).reshape(grid.shape)
+            return np.where(cells.present, e, 0)
+
+        sheet = draw(block_lowest(height, cells.present, BLOCK), flat, True)
+        usable = cells.present
+        if config.connect:
+            e = over(sheet)
+            label = connectivity.components(cells.r, e, height, cells.present & (e < LOW) & ~steep)
+            usable = connectivity.connected(cells.r, label, grid.areas)
+            sheet = draw(usable, sheet, False)
+            e = over(sheet)
+            usable = usable | connectivity.readmitted(label, usable, e, grid.areas)
+            usable |= steep & (np.abs(e) < connectivity.STEP)
         sheet = draw(usable, sheet, False)
-        usable = usable | connectivity.readmitted(label, usable, over(sheet), grid.areas)
-    sheet = draw(usable, sheet, False)
-    e = over(sheet)
-    doubtful = steep & (e > 0)
-    seed = usable & ~doubtful & (np.abs(e) < config.seed_height) & (cells.r < config.seed_radius)
-    return Expected(sheet, e, usable, doubtful, seed)
+        e = over(sheet)
+        doubtful = steep & (e > 0)
+        seed = usable & ~doubtful & (np.abs(e) < config.seed_height) & (cells.r < config.seed_radius)
+        return Expected(sheet, e, usable, doubtful, seed)

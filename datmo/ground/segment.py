@@ -9,16 +9,20 @@ import numpy as np
 from datmo.arrays import F32, F64, I32, Array, Bool
 from datmo.bins import bin_edges
 from datmo.errors import ConfigError, MessageError, nearest
-from datmo.ground.coarse import Sheet
 from datmo.ground.config import GroundConfig
-from datmo.ground.grid import PolarGrid, candidates, locate
+from datmo.ground.grid import Candidates, Located, PolarGrid
 from datmo.ground.label import LimitRules, cell_means, label_points, limits
 from datmo.ground.methods import METHODS, regression
 from datmo.ground.plane import robust_plane
 from datmo.ground.regression import Cells, Heights
-from datmo.ground.seeds import expect_ground
-from datmo.ground.surface import PolarSurface, gaps
+from datmo.ground.seeds import GroundExpectation
+from datmo.ground.sheet import Sheet, learned_bend
+from datmo.ground.surface import PolarSurface, at_cells, gaps
 from datmo.messages import Ground
+
+DRIFT = 0.7  # what is unseen strays so much less than the sheet bends; fitted as in `field`
+BEND_RADIUS = 50.0  # [m]
+LEAST_NOISE = 0.001**2  # of a cell's mean: the calibration of rings against each other [m²]
 
 
 def segment_ground(
@@ -75,6 +79,7 @@ class GroundSegmenter:
         self._limits = LimitRules(
             c.point_height, c.point_range, c.point_slope, c.point_most, c.point_below, c.foot_factor
         )
+        self._expect = GroundExpectation(self._grid, c)
         self._regression = regression(self._grid, c)
         self.learned = self._regression.start()
 
@@ -99,58 +104,54 @@ class GroundSegmenter:
         points = _rows("points", points, np.float32, (None, 3))
         kept = np.ones(len(points), bool) if keep is None else _rows("keep", keep, bool, (len(points),))
         grid, config = self._grid, self.config
-        cell, azimuth, radius = locate(points, kept, grid.edges, grid.segments)
-        plane = self._plane(points, cell, radius)
-        cells = candidates(points, cell, radius, plane, grid, config.multipath)
-        expected = expect_ground(cells, grid, config)
-        lowest = Cells(cells.r, expected.e, expected.usable)
-        member, heights = self._regression.grow(lowest, expected.seed, expected.doubtful, self.learned)
-        surface = self._surface(plane, expected.sheet, member, heights)
-        x, y, z = points.T.astype(float)
-        height, std = surface.at(x, y, azimuth, radius)
-        is_ground = self._label(z - height, cell, surface)
+        located = Located(points, kept, grid)
+        cells = located.candidates(config.multipath)
+        plane = self._plane(cells)
+        expected = self._expect(cells, plane)
+        level = expected.sheet.at(*grid.node_places, grid.segments).reshape(grid.segments, -1)
+        lowest = Cells(cells.r, expected.e, expected.usable, cells.azimuth)
+        seen, heights = self._regression.grow(lowest, expected.seed, expected.doubtful, self.learned)
         if config.refit:
-            surface = self._refit(z - height, radius, cell, is_ground, surface, expected.sheet)
-            height, std = surface.at(x, y, azimuth, radius)
-            is_ground = self._label(z - height, cell, surface)
-        return Ground(is_ground, height.astype(np.float32), std.astype(np.float32), surface)
+            over = PolarSurface(plane, grid.nodes, level + heights.mean, heights.var).below(located)
+            is_ground = self._label(over, located.cell, level + heights.mean)
+            seen, heights = self._refit(located, over, is_ground, heights.mean)
+        surface = self._surface(plane, expected.sheet, level, seen, heights)
+        over, std = surface.below_with_std(located)
+        is_ground = self._label(over, located.cell, surface.mean)
+        return Ground(is_ground, points[:, 2] - over, std, surface)
 
-    def _label(self, over: F64, cell: I32, surface: PolarSurface) -> Bool:
-        """Which points at `over` the surface (n,) [m] are ground."""
-        return label_points(over, cell, limits(surface, self._grid.centers, self._limits), self._limits)
+    def _label(self, over: F64, cell: I32, height: F64) -> Bool:
+        """Which points at `over` the surface (n,) [m] are ground; its height over the plane (M, Q) [m]."""
+        return label_points(over, cell, limits(height, self._grid.nodes, self._limits), self._limits)
 
-    def _plane(self, points: F32, cell: I32, radius: F64) -> F64:
+    def _plane(self, cells: Candidates) -> F64:
         """The local slope from the lowest points of the cells within `plane_radius`."""
-        cells = candidates(points, cell, radius, np.zeros(3), self._grid, self.config.multipath)
         near = cells.present & (cells.r < self.config.plane_radius)
-        return robust_plane(cells.xyz[near], self.config.start_height)
+        xyz = np.column_stack([cells.x[near], cells.y[near], cells.z[near]])
+        return robust_plane(xyz, self.config.start_height)
 
-    def _surface(self, plane: F64, sheet: Sheet, seen: Bool, heights: Heights) -> PolarSurface:
-        """h0 plus the regression's heights, joined.
+    def _refit(self, located: Located, over: F64, is_ground: Bool, mean: F64) -> tuple[Bool, Heights]:
+        """The heights through the mean of each cell's ground points, hyper-parameters learned.
 
-        The deviation grows away from the cells (M, N) that were `seen`, and holds the part of the
-        noise that the sensor's own does not explain: that is roughness within the cells, and so height.
+        Args:
+            over: (n,) height of the points over the first surface [m]. mean: (M, Q) of that over h0 [m].
+
+        Returns:
+            the cells (M, N) that hold ground, and the heights.
         """
+        means = cell_means(located, over, is_ground, LEAST_NOISE)
+        y = np.where(means.use, means.over + at_cells(mean, self._grid.nodes, means.azimuth, means.r), 0.0)
+        cells = Cells(means.r, y, means.use, means.azimuth, means.noise)
+        heights, self.learned = self._regression.fit(cells, self.learned)
+        return means.use, heights
+
+    def _surface(self, plane: F64, sheet: Sheet, level: F64, seen: Bool, heights: Heights) -> PolarSurface:
+        """The sheet's `level` at the nodes and the regression's heights, joined; the deviation grows away
+        from the cells (M, N) that were seen, faster the more the sheet bends."""
         grid, config = self._grid, self.config
-        mean = heights.mean + sheet(grid.xy(grid.nodes)).reshape(heights.mean.shape)
-        away = np.minimum(config.drift * gaps(seen, grid.centers, grid.nodes), config.most_std)
-        rough = np.maximum(heights.noise - config.noise_floor**2, 0.0)
-        std = np.sqrt(heights.var + rough + away**2)
+        drift = max(DRIFT * learned_bend(sheet, seen, BEND_RADIUS), config.drift)
+        away = np.minimum(drift * gaps(seen, grid.centers, grid.nodes), config.most_std)
+        mean, std = level + heights.mean, np.sqrt(heights.var + away**2)
         # All segments share the place of their first node, the sensor's foot.
         mean[:, 0], std[:, 0] = mean[:, 0].mean(), std[:, 0].mean()
         return PolarSurface(plane, grid.nodes, mean, std)
-
-    def _refit(
-        self, over: F64, radius: F64, cell: I32, is_ground: Bool, surface: PolarSurface, sheet: Sheet
-    ) -> PolarSurface:
-        """The surface through the mean of each cell's ground points, hyper-parameters learned."""
-        grid = self._grid
-        count, mean_over, mean_r = cell_means(over, radius, cell, is_ground, grid.shape[0] * grid.shape[1])
-        use = (count > 0).reshape(grid.shape)
-        r = np.where(use, mean_r.reshape(grid.shape), grid.centers)
-        xy = grid.xy(r)
-        a, b, c = surface.plane
-        height = surface(xy)[0] - (a * xy[:, 0] + b * xy[:, 1] + c) - sheet(xy)
-        y = np.where(use, mean_over.reshape(grid.shape) + height.reshape(grid.shape), 0)
-        heights, self.learned = self._regression.fit(Cells(r, y, use), self.learned)
-        return self._surface(surface.plane, sheet, use, heights)

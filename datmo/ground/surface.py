@@ -7,7 +7,9 @@ from dataclasses import dataclass
 import numba
 import numpy as np
 
-from datmo.arrays import F64, Bool
+from datmo.arrays import F32, F64, I32, Bool
+from datmo.ground.grid import Located
+from datmo.ground.threads import over_rows
 from datmo.messages import Surface
 from datmo.messages.base import Message
 
@@ -22,6 +24,18 @@ def _corner(nodes: F64, radius: float) -> tuple[int, float]:
 
 
 @numba.njit(cache=True, nogil=True)
+def _blend(s: float, q: int, t: float, table: F64) -> float:
+    """Bilinear value at azimuth s [segments from the middle of the first] and share t past column q."""
+    M = len(table)
+    m = int(np.floor(s))
+    f = s - m
+    a, b = (m if m >= 0 else M - 1), (m + 1 if m + 1 < M else 0)
+    low = (1 - t) * table[a, q] + t * table[a, q + 1]
+    high = (1 - t) * table[b, q] + t * table[b, q + 1]
+    return (1 - f) * low + f * high
+
+
+@numba.njit(cache=True, nogil=True)
 def interpolate(
     x: F64, y: F64, azimuth: F64, radius: F64, plane: F64, nodes: F64, table: F64, spread: F64
 ) -> tuple[F64, F64]:
@@ -30,23 +44,64 @@ def interpolate(
     Bilinear in azimuth and radius; rows stand at the middle of their segment and close around. NaN
     where the azimuth is.
     """
-    M, last = len(table), nodes[-1]
     mean, std = np.full(len(x), np.nan), np.full(len(x), np.nan)
     for i in range(len(x)):
         if np.isnan(azimuth[i]):
             continue
         s = azimuth[i] - 0.5
-        m = int(np.floor(s))
-        f = s - m
-        a, b = m % M, (m + 1) % M
         q, t = _corner(nodes, radius[i])
-        over = (1 - f) * ((1 - t) * table[a, q] + t * table[a, q + 1])
-        over += f * ((1 - t) * table[b, q] + t * table[b, q + 1])
-        v = (1 - f) * ((1 - t) * spread[a, q] + t * spread[a, q + 1])
-        v += f * ((1 - t) * spread[b, q] + t * spread[b, q + 1])
-        mean[i] = over + plane[0] * x[i] + plane[1] * y[i] + plane[2]
-        std[i] = np.hypot(v, BEYOND * max(radius[i] - last, 0.0))
+        mean[i] = _blend(s, q, t, table) + plane[0] * x[i] + plane[1] * y[i] + plane[2]
+        std[i] = np.hypot(_blend(s, q, t, spread), BEYOND * max(radius[i] - nodes[-1], 0.0))
     return mean, std
+
+
+@numba.njit(cache=True, nogil=True)
+def over_points(
+    points: F32,
+    cell: I32,
+    azimuth: F64,
+    radius: F64,
+    over: F64,
+    std: F32,
+    with_std: bool,
+    plane: F64,
+    nodes: F64,
+    table: F64,
+    spread: F64,
+) -> None:
+    """Height of each point over the surface [m] and, if asked, the surface's deviation there, written to
+    `over` (n,) and `std` (n,); NaN where x or y is not finite.
+
+    As `interpolate`; a cell tells its column without a search.
+    """
+    N, last = len(nodes) - 2, nodes[-1]
+    for i in range(len(points)):
+        r = radius[i]
+        if np.isnan(azimuth[i]):
+            over[i], std[i] = np.nan, np.nan
+            continue
+        if cell[i] >= 0:
+            b = cell[i] % N
+            q = b + 1 if r >= nodes[b + 1] else b
+            t = (r - nodes[q]) / (nodes[q + 1] - nodes[q])
+        else:
+            q, t = _corner(nodes, r)
+        s = azimuth[i] - 0.5
+        level = plane[0] * points[i, 0] + plane[1] * points[i, 1] + plane[2]
+        over[i] = points[i, 2] - level - _blend(s, q, t, table)
+        if with_std:
+            std[i] = np.hypot(_blend(s, q, t, spread), BEYOND * max(r - last, 0.0))
+
+
+@numba.njit(cache=True, nogil=True)
+def at_cells(table: F64, nodes: F64, azimuth: F64, radius: F64) -> F64:
+    """Bilinear value of table (M, Q) at one place in each cell, azimuths [segments] and radii (M, N) [m]."""
+    out = np.empty(radius.shape)
+    for m in range(out.shape[0]):
+        for b in range(out.shape[1]):
+            q, t = _corner(nodes, radius[m, b])
+            out[m, b] = _blend(azimuth[m, b] - 0.5, q, t, table)
+    return out
 
 
 @numba.njit(cache=True, nogil=True)
@@ -107,3 +162,18 @@ class PolarSurface(Message, Surface):
     def at(self, x: F64, y: F64, azimuth: F64, radius: F64) -> tuple[F64, F64]:
         """As the call, for places whose azimuth [segments] and radius [m] are known."""
         return interpolate(x, y, azimuth, radius, self.plane, self.nodes, self.mean, self.std)
+
+    def below(self, located: Located) -> F64:
+        """Height (n,) of located points over the surface [m]."""
+        return self._below(located, False)[0]
+
+    def below_with_std(self, located: Located) -> tuple[F64, F32]:
+        """Height (n,) of located points over the surface, and its deviation (n,) there [m]."""
+        return self._below(located, True)
+
+    def _below(self, located: Located, with_std: bool) -> tuple[F64, F32]:
+        n = len(located.points)
+        over, std = np.empty(n), np.empty(n, np.float32)
+        arrays = (located.points, located.cell, located.azimuth, located.radius, over, std)
+        over_rows(over_points, arrays, (with_std, self.plane, self.nodes, self.mean, self.std))
+        return over, std

@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
+from itertools import pairwise
 from typing import Any
 
 from datmo.arrays import Array
@@ -25,8 +26,13 @@ def each(task: Callable[[Any], Any], items: Iterable[Any]) -> list[Any]:
     return list(_pool(os.getpid()).map(task, items))
 
 
+def blocks(n: int, count: int = 0) -> list[tuple[int, int]]:
+    """First row and the one after the last of each of `count` blocks of n rows, of `BLOCKS` if 0."""
+    count = count or BLOCKS
+    edges = [n * b // count for b in range(count + 1)]
+    return list(pairwise(edges))
+
+
 def over_rows(kernel: Callable[..., None], arrays: tuple[Array, ...], constants: tuple[Any, ...]) -> None:
     """kernel(*blocks, *constants) for fixed blocks of the arrays' rows; it writes into some of them."""
-    n = len(arrays[0])
-    edges = [n * b // BLOCKS for b in range(BLOCKS + 1)]
-    each(lambda b: kernel(*(a[edges[b] : edges[b + 1]] for a in arrays), *constants), range(BLOCKS))
+    each(lambda rows: kernel(*(a[slice(*rows)] for a in arrays), *constants), blocks(len(arrays[0])))

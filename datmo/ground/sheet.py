@@ -1,0 +1,148 @@
+"""The coarse sheet: a robust two-dimensional ground, blind to what stands on it.
+
+It ties all segments together and is the expected ground h0 of every method. Weights settle in rounds
+(iteratively re-weighted least squares) on a lattice of a third of the grid's lines and bins.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numba
+import numpy as np
+
+from datmo.arrays import F64, I64, Bool
+from datmo.ground.lattice import Lattice, Prior, corners, evaluate, gather, relax
+
+THIRD = 3
+QUANTILE = 0.35
+FIRST_SCALES = np.geomspace(1.0, 0.1, 6)
+ROBUST_SCALES = np.geomspace(4.0, 1.0, 4)
+LATER_SCALES = np.array([2.0, 1.0])
+TURNS, EXTRA = 2, 6
+BELOW = 3.0
+MEDIAN_OF_NORMAL, FEWEST = 0.6745, 10
+
+Places = tuple[I64, F64, I64, F64]
+
+
+def coarse_lattice(segments: int, centers: F64) -> Lattice:
+    """The lattice of a third of the lines and radii of a grid with bins' middles `centers` [m]."""
+    groups = np.array_split(centers, -(-len(centers) // THIRD))
+    return Lattice(-(-segments // THIRD), np.array([group.mean() for group in groups]))
+
+
+@numba.njit(cache=True, nogil=True)
+def _quantile_weight(e: float, scale: float, low: float, noise: float) -> float:
+    return (low if e > 0 else 1 - low) * scale / np.hypot(e, scale)
+
+
+@numba.njit(cache=True, nogil=True)
+def _robust_weight(e: float, scale: float, below: float) -> float:
+    u = e / (below * scale) if e < 0 else e / scale
+    return 1 / (1 + u * u) ** 2
+
+
+@numba.njit(cache=True, nogil=True)
+def _settle(
+    f: F64,
+    y: F64,
+    weight: F64,
+    line: I64,
+    s: F64,
+    node: I64,
+    t: F64,
+    bands: F64,
+    near: F64,
+    second: F64,
+    noise: float,
+    quantile: float,
+    below: float,
+    first: F64,
+    later: F64,
+    turns: int,
+    extra: int,
+) -> None:
+    normal, w = np.empty((5, *f.shape)), np.empty(len(y))
+    for k in range(len(first) + len(later)):
+        expected = evaluate(f, line, s, node, t)
+        for i in range(len(y)):
+            e = y[i] - expected[i]
+            if k < len(first):
+                w[i] = weight[i] * _quantile_weight(e, first[k], quantile, noise)
+            else:
+                w[i] = weight[i] * _robust_weight(e, later[k - len(first)], below)
+        gather(w, y, line, s, node, t, normal)
+        if k == 0 and len(first) == 0:
+            f[:] = np.where(normal[0] > 0.0, f, 0.0)  # what bore on these nodes is out
+        for _ in range(turns + (extra if k == len(first) + len(later) - 1 else 0)):
+            relax(f, normal, bands, near, second, 0, len(f))
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A fitted sheet: heights f (M', N') over the plane on a lattice [m]."""
+
+    lattice: Lattice
+    f: F64
+
+    def at(self, azimuth: F64, radius: F64, segments: int) -> F64:
+        """Height (n,) over the plane at azimuths (n,), in segments of the grid, and radii (n,) [m]."""
+        parts = corners(azimuth, radius, self.lattice.lines, segments, self.lattice.radii)
+        return np.asarray(evaluate(self.f, *parts))
+
+
+def flat_sheet(lattice: Lattice) -> Sheet:
+    """The plane itself."""
+    return Sheet(lattice, np.zeros((lattice.lines, len(lattice.radii))))
+
+
+def settle(
+    sheet: Sheet,
+    y: F64,
+    weight: F64,
+    places: Places,
+    prior: Prior,
+    noise: float,
+    asymmetric: bool,
+    first: bool,
+) -> Sheet:
+    """The sheet drawn through the ground among lowest points, starting from `sheet`.
+
+    The `first` time for the quantile 0.35, then robustly with a scale that shrinks to the noise; later
+    with that scale only. Below counts more than above, since what is not ground stands above it.
+
+    Args:
+        y: (n,) height over the plane [m]. weight: (n,) 1 for an ordinary point, 0 leaves it out.
+        places: `corners` of the points. noise: [m].
+    """
+    f = sheet.f.copy()
+    quantile, below = (QUANTILE, BELOW) if asymmetric else (0.5, 1.0)
+    scales = (FIRST_SCALES, noise * ROBUST_SCALES) if first else (np.empty(0), noise * LATER_SCALES)
+    bands = prior.bands, prior.next, prior.second
+    extra = 0 if first else EXTRA
+    rows = np.flatnonzero(weight)
+    at = tuple(part[rows] for part in places)
+    _settle(f, y[rows], weight[rows], *at, *bands, noise, quantile, below, *scales, TURNS, extra)
+    return Sheet(sheet.lattice, f)
+
+
+def learned_bend(sheet: Sheet, seen: Bool, radius: float) -> float:
+    """τ of the prior as the sheet shows it: the robust std of its second difference over h, by h [m/m].
+
+    The height of what is not seen is about that uncertain, times the distance to what is. 0 where
+    fewer than ten places tell.
+
+    Args:
+        seen: (M, N) cells of the grid with ground. radius: places farther than this do not count [m].
+    """
+    r, f = sheet.lattice.radii, sheet.f
+    M, N = seen.shape
+    padded = np.zeros((sheet.lattice.lines * THIRD, len(r) * THIRD), bool)
+    padded[:M, :N] = seen
+    nodes = padded.reshape(sheet.lattice.lines, THIRD, len(r), THIRD).any((1, 3))
+    known = nodes[:, 2:] & nodes[:, 1:-1] & nodes[:, :-2] & (r[1:-1] < radius)
+    h = np.diff(r)
+    bends = (np.diff(f, axis=1) / h)[:, 1:] - (np.diff(f, axis=1) / h)[:, :-1]
+    told = np.abs(bends[known])
+    return float(np.median(told) / MEDIAN_OF_NORMAL) if len(told) >= FEWEST else 0.0
