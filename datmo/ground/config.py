@@ -54,6 +54,7 @@ class GroundConfig(BaseModel):
     learn: bool = Field(True, description="maximum likelihood of a or ℓ, σ_f, σ_n once a frame")
     objective: Objective = Field("whitened", description="of zl and zli; the others are the thesis's")
     truncated: bool = Field(False, description="leave out the gradient through η, as the thesis does")
+    line_factor: bool = Field(True, description="zl, zli: learn a factor on the line length, else 1")
     support_angle: float = Field(0.2, gt=0, le=2, description="ζ_h, pseudo-inputs about the mean [rad]")
     supports: int = Field(8, ge=1, le=60, description="most pseudo-inputs of a segment")
     learn_cells: int = Field(32, ge=3, le=400, description="most cells of a segment to learn from")

@@ -67,7 +67,8 @@ class FrameObjective:
 
 @dataclass(frozen=True)
 class Climbed:
-    """Where a climb ended: θ, 𝓛(θ), how often 𝓛 was taken, and which bounds hold it back."""
+    """Where a climb ended: θ, 𝓛(θ), how often 𝓛 was taken, and which latent parameters
+    ended at a bound."""
 
     theta: F64
     value: float
@@ -98,6 +99,6 @@ def climb(objective: FrameObjective, theta: F64, steps: int) -> Climbed:
         f"{name} = {np.exp(theta[k]):.3g} is at its {side} bound"
         for k, name in enumerate(objective.names)
         for side, at in (("lower", limits[k, 0]), ("upper", limits[k, 1]))
-        if abs(theta[k] - at) < 1e-6
+        if name.startswith("bar_") and abs(theta[k] - at) < 1e-6
     ]
     return Climbed(theta, -value, evaluations, tuple(notes))

@@ -18,12 +18,15 @@ from datmo.ground.regression import Cells, Learned
 from datmo.ground.selection import pack, pseudo_inputs
 
 LENGTH_BOUND = (0.3, 100.0)
+FACTOR_BOUND, FACTOR_START = (0.02, 4.0), 0.5
 LATENT_START = {"f": 0.5, "l": 10.0, "n": 0.1}
 
 
 class LatentLengths(Segments):
     """zl: log L = μ + a latent process, μ the log length of the line; all segments learn at once.
 
+    μ holds a factor a on the line length that is learned like the others (a = 1 in the thesis): rough
+    ground bends within its lines, and the latent process would have to shift all of them.
     A frame after the first starts from the hyper-parameters and the latent process of the last one.
     """
 
@@ -32,12 +35,14 @@ class LatentLengths(Segments):
     def __init__(self, grid: PolarGrid, config: GroundConfig) -> None:
         super().__init__(grid, config)
         self._mode = (OBJECTIVES[config.objective], config.truncated)
+        self._factor_bound = FACTOR_BOUND if config.line_factor else (1.0, 1.0)
         self._suffixes = ("", "_noise") if self.latent_noise else ("",)
 
     def start(self) -> Learned:
         """See `Regression`."""
         c, none = self.config, np.zeros(0, np.int32)
-        hyper = {"sigma_f": c.signal_std, "sigma_n": c.noise_std}
+        factor = float(np.clip(FACTOR_START, *self._factor_bound))
+        hyper = {"sigma_f": c.signal_std, "a": factor, "sigma_n": c.noise_std}
         hyper |= {f"bar_sigma_{k}{s}": v for s in self._suffixes for k, v in LATENT_START.items()}
         nothing = np.zeros((self.grid.segments, len(self.nodes)))
         return Learned(hyper, none, none, none, carried=(nothing,) * len(self._suffixes))
@@ -54,7 +59,7 @@ class LatentLengths(Segments):
     def _scales(self, means: tuple[F64, F64, I32], at: list[F64], learned: Learned) -> Scales:
         """Scales from μ and the latent processes at the cells and (carried) at the nodes."""
         L, L_nodes = (
-            np.exp(np.clip(m + d, *np.log(LENGTH_BOUND)))
+            np.exp(np.clip(m + d + np.log(learned.hyper["a"]), *np.log(LENGTH_BOUND)))
             for m, d in ((means[0], at[0]), (means[1], learned.carried[0]))
         )
         floor2 = self.config.noise_floor**2
@@ -71,7 +76,7 @@ class LatentLengths(Segments):
         packed = pack(cells, np.arange(len(cells.r)), config.learn_cells)
         supports = pseudo_inputs(cells, config.start_height, config.support_angle, config.supports)
         base = np.take_along_axis(means, packed.bin, 1)
-        length = Latent("", base, packed, supports, self._mode)
+        length = Latent("", base, packed, supports, self._mode, ("a", self._factor_bound))
         level = np.zeros(packed.r.shape)
         noise: Field = Shifted("sigma_n", level, NOISE_BOUND)
         latents = [length]

@@ -101,7 +101,7 @@ def textbook(
         B = latent(rb, rb) + h["bar_sigma_n"] ** 2 * np.eye(p)
         C = np.linalg.cholesky(B)
         delta = C @ x if objective == "whitened" else x
-        L = np.exp(means[m, f.cells.bin[m, :n]] + latent(r, rb) @ np.linalg.solve(B, delta))
+        L = h["a"] * np.exp(means[m, f.cells.bin[m, :n]] + latent(r, rb) @ np.linalg.solve(B, delta))
         S = L[:, None] ** 2 + L**2
         K = np.sqrt(2 * np.outer(L, L) / S) * np.exp(-2 * (r[:, None] - r) ** 2 / S)
         A = h["sigma_f"] ** 2 * K + h["sigma_n"] ** 2 * np.eye(n)
@@ -150,6 +150,14 @@ def test_without_freedom_zl_is_a_process_of_line_lengths() -> None:
     other = theta.copy()
     other[[k for k, name in enumerate(f.names) if name.startswith("bar_")]] += 0.3
     assert f(theta)[0] == f(other)[0]
+
+
+def test_the_factor_on_the_line_length_can_be_held_at_one() -> None:
+    regression = LatentLengths(GRID, GroundConfig(line_factor=False, supports=4))
+    f = regression.objective(cells(), regression._means(cells())[0])[0]
+    found = climb(f, somewhere(f), 10)
+    assert f.hyper(found.theta)["a"] == 1
+    assert regression.start().hyper["a"] == 1
 
 
 def test_cells_are_thinned_evenly_from_the_first_to_the_last() -> None:
