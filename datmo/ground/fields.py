@@ -153,4 +153,4 @@ class Latent(Field):
         if self._mode[0] == latent.WHITENED:
             by_name = np.array([hyper[name] for name in self.names[-3:]])
             over_rows(latent.whiten, (self._supports.r, self._supports.count, x), (by_name,))
-        return x[self._holds]
+        return np.asarray(x[self._holds])

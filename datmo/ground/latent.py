@@ -126,6 +126,18 @@ def _adjoint(C: F64, x: F64, h: F64, q: F64, objective: int, truncated: bool) ->
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
+def _by_hyper(rb: F64, Kb: F64, Y: F64, hyper: F64) -> tuple[float, float, float]:
+    """Σ Y∘∂B in the logarithms of σ̄_f, σ̄_l, σ̄_n; Kb = K̄(r̄, r̄)."""
+    by_f, by_l, by_n = 0.0, 0.0, 0.0
+    for i in range(len(rb)):
+        by_n += 2 * hyper[2] ** 2 * Y[i, i]
+        for j in range(len(rb)):
+            by_f += 2 * Kb[i, j] * Y[i, j]
+            by_l += Kb[i, j] * Y[i, j] * (rb[i] - rb[j]) ** 2 / hyper[1] ** 2
+    return by_f, by_l, by_n
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy")
 def gradients(
     r: F64,
     n: I64,
@@ -161,12 +173,7 @@ def gradients(
                 by_f += 2 * k * h[m, j]
                 by_l += k * h[m, j] * d2
         dx[m, :p], Y = _adjoint(C, x[m, :p], h[m, :p], q, objective, truncated)
-        if truncated:
-            by_f, by_l = 0.0, 0.0
-        by_n = 0.0
-        for i in range(p):
-            by_n += 2 * hyper[2] ** 2 * Y[i, i]
-            for j in range(p):
-                by_f += 2 * Kb[i, j] * Y[i, j]
-                by_l += Kb[i, j] * Y[i, j] * (rb[m, i] - rb[m, j]) ** 2 / hyper[1] ** 2
-        dhyper[m, 0], dhyper[m, 1], dhyper[m, 2] = by_f, by_l, by_n
+        through = 0.0 if truncated else 1.0
+        dhyper[m, 0], dhyper[m, 1], dhyper[m, 2] = _by_hyper(rb[m, :p], Kb, Y, hyper)
+        dhyper[m, 0] += through * by_f
+        dhyper[m, 1] += through * by_l

@@ -89,8 +89,8 @@ class LatentLengths(Segments):
         """See `Segments`. Without data the last values stay."""
         means, config = self._means(cells), self.config
         objective, latents, supports = self.objective(cells, means[0])
-        counts = (a.astype(np.int32) for a in (cells.use.sum(1), supports.count, means[2]))
-        learned = replace(learned, **dict(zip(("candidates", "supports", "lines"), counts, strict=True)))
+        n_PG, n_L = cells.use.sum(1).astype(np.int32), supports.count.astype(np.int32)
+        learned = replace(learned, candidates=n_PG, supports=n_L, lines=means[2])
         if objective.cells.count.any():
             pairs = zip(latents, learned.carried, strict=True)
             own = [latent.own_start(field, self.nodes, learned.hyper) for latent, field in pairs]
