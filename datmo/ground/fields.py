@@ -121,21 +121,19 @@ class Latent(Field):
         self._hyper = np.exp(shared[-3:])
         self._x[self._holds] = own
         cost = np.zeros(len(cells.r))
-        rows = (supports.r, supports.count, self._x, self._h, cost)
-        over_rows(latent.weights, rows, (self._hyper, self._mode[0]))
+        # Both are too short for handing them to threads to pay.
+        hyper = self._hyper
+        latent.weights(supports.r, supports.count, self._x, self._h, cost, hyper, self._mode[0])
         out = self._base + (shared[0] if self._scaled else 0.0)
-        self.add(cells.r, cells.count, out)
+        latent.spread(cells.r, cells.count, supports.r, supports.count, self._h, out, hyper)
         return out, cost
-
-    def add(self, r: F64, count: I64, out: F64) -> None:
-        """Add the latent process at r (B, K) to the first `count` (B,) of each row of out."""
-        rows = (r, count, self._supports.r, self._supports.count, self._h, out)
-        over_rows(latent.spread, rows, (self._hyper,))
 
     def at(self, r: F64) -> F64:
         """The latent process at r (B, K) [m], without base and scale."""
         out = np.zeros(r.shape)
-        self.add(r, np.full(len(r), r.shape[1]), out)
+        every = np.full(len(r), r.shape[1])
+        rows = (r, every, self._supports.r, self._supports.count, self._h, out)
+        over_rows(latent.spread, rows, (self._hyper,))
         return out
 
     def gradient(self, g: F64) -> tuple[F64, F64]:
