@@ -58,6 +58,7 @@ class Datmo:
         sight = make_sight(scan, keep)
         tracks = self.tracker.step(boxes, scan.stamp, sight)
         clock.lap("tracks")
+        notes |= {f"ground {k}": note for k, note in enumerate(self.ground.learned.notes)}
         notes |= self.tracker.notes | {f"cluster {r.cluster}": str(r) for r in rejected}
         return Frame(scan, ground, clusters, boxes, tracks, clock.milliseconds, notes)
 

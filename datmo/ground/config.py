@@ -8,7 +8,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from datmo import bins as shared
 
-Method = Literal["default", "z", "z-se"]
+Method = Literal["default", "z-se", "z", "zl", "zli"]
+Objective = Literal["whitened", "printed", "prior"]
 
 
 class GroundConfig(BaseModel):
@@ -17,7 +18,7 @@ class GroundConfig(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     method: Method = Field(
-        "default", description="default: one tied field; z: non-stationary kernel; z-se: stationary"
+        "default", description="default: tied field; z-se: one length-scale; z: lines; zl: latent; zli: noise too"
     )
     segments: int = Field(shared.SEGMENTS, ge=12, le=720, description="M, sectors of the polar grid")
     bins: int = Field(shared.BINS, ge=10, le=400, description="N, bins of a segment")
@@ -52,6 +53,15 @@ class GroundConfig(BaseModel):
     noise_std: float = Field(0.03, gt=0, description="σ_n, if not learned [m]")
     noise_floor: float = Field(0.01, gt=0, description="smallest σ_n, the range noise [m]")
     learn: bool = Field(True, description="maximum likelihood of a or ℓ, σ_f, σ_n once a frame")
+    objective: Objective = Field("whitened", description="of zl and zli; the others are the thesis's")
+    truncated: bool = Field(False, description="leave out the gradient through η, as the thesis does")
+    line_factor: bool = Field(True, description="zl, zli: learn a factor on the line length, else 1")
+    support_angle: float = Field(0.2, gt=0, le=2, description="ζ_h, pseudo-inputs about the mean [rad]")
+    supports: int = Field(8, ge=1, le=60, description="most pseudo-inputs of a segment")
+    learn_cells: int = Field(32, ge=3, le=400, description="most cells of a segment to learn from")
+    learn_segments: int = Field(24, ge=1, le=720, description="most segments that z and z-se learn from")
+    learn_first: int = Field(20, ge=1, le=500, description="steps of L-BFGS in the first frame")
+    learn_next: int = Field(4, ge=1, le=500, description="steps of L-BFGS in a frame that follows")
     drift: float = Field(0.002, ge=0, description="least std gained per metre from what was seen [m/m]")
     most_std: float = Field(1.0, gt=0, description="largest std from that [m]")
 

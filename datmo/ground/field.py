@@ -189,7 +189,8 @@ class Field(Regression):
 
     def start(self) -> Learned:
         """A class-E ground."""
-        return Learned({"c": 1e-3}, np.zeros(0, np.int32), np.zeros(0, np.int32))
+        none = np.zeros(0, np.int32)
+        return Learned({"c": 1e-3}, none, none, none)
 
     def grow(self, cells: Cells, seed: Bool, doubtful: Bool, learned: Learned) -> tuple[Bool, Heights]:
         """Robust rounds: weights fall with the distance above the field, and less with that below."""
@@ -222,8 +223,10 @@ class Field(Regression):
         seen = noise + self._seen_share * c * self._size
         between = self._between_share * c / np.maximum(conductance(cells.use, self._r), TINY)
         var = np.minimum(np.where(cells.use, seen, between), self.config.most_std**2)
-        count = cells.use.sum(1).astype(np.int32)
-        return self._heights(f, var, noise), Learned({"c": frame}, count, np.zeros_like(count))
+        count, none = cells.use.sum(1).astype(np.int32), np.zeros(len(y), np.int32)
+        return self._heights(f, var, noise), Learned(
+            {"c": frame}, count, none, none, frames=learned.frames + 1
+        )
 
     def _settle(self, f: F64, w: F64, y: F64, out: F64, across: F64) -> None:
         for _ in range(TURNS):

@@ -7,13 +7,16 @@ from collections.abc import Callable
 from datmo.ground.config import GroundConfig
 from datmo.ground.field import Field
 from datmo.ground.grid import PolarGrid
-from datmo.ground.process import LineLengths, OneLength
 from datmo.ground.regression import Regression
+from datmo.ground.z import LineLengths, OneLength
+from datmo.ground.zl import LatentLengths, LatentLengthsAndNoise
 
 REGRESSIONS: dict[str, Callable[[PolarGrid, GroundConfig], Regression]] = {
     "default": Field,
     "z": LineLengths,
     "z-se": OneLength,
+    "zl": LatentLengths,
+    "zli": LatentLengthsAndNoise,
 }
 METHODS: tuple[str, ...] = tuple(REGRESSIONS)
 

@@ -52,15 +52,23 @@ class Learned:
 
     Attributes:
         hyper: hyper-parameters by their name in method.md, SI units.
-        candidates: (M,) n_PG, cells of each segment that were regressed. lines: (M,) n_L, lines of
-        each segment, 0 where the method draws none.
+        candidates: (M,) n_PG, cells of each segment that were regressed. supports: (M,) n_L,
+        pseudo-inputs of each segment. lines: (M,) lines of each segment. 0 where a method has none.
+        value: the objective reached. evaluations: how often it was taken.
         notes: what the reader should know, such as a bound that was hit.
+        frames: how many frames were learned from.
+        carried: (M, Q) arrays at the nodes that the next frame starts from, the method's own.
     """
 
     hyper: dict[str, float]
     candidates: I32
+    supports: I32
     lines: I32
+    value: float = float("nan")
+    evaluations: int = 0
     notes: tuple[str, ...] = ()
+    frames: int = 0
+    carried: tuple[F64, ...] = ()
 
 
 class Regression(ABC):

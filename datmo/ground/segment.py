@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from datmo.arrays import F32, F64, I32, Array, Bool
+from datmo.arrays import F64, I32, Array, Bool
 from datmo.bins import bin_edges
 from datmo.errors import ConfigError, MessageError, nearest
 from datmo.ground.config import GroundConfig

@@ -33,7 +33,7 @@ def coarse_lattice(segments: int, centers: F64) -> Lattice:
 
 
 @numba.njit(cache=True, nogil=True)
-def _quantile_weight(e: float, scale: float, low: float, noise: float) -> float:
+def _quantile_weight(e: float, scale: float, low: float) -> float:
     return (low if e > 0 else 1 - low) * scale / np.hypot(e, scale)
 
 
@@ -55,7 +55,6 @@ def _settle(
     bands: F64,
     near: F64,
     second: F64,
-    noise: float,
     quantile: float,
     below: float,
     first: F64,
@@ -69,7 +68,7 @@ def _settle(
         for i in range(len(y)):
             e = y[i] - expected[i]
             if k < len(first):
-                w[i] = weight[i] * _quantile_weight(e, first[k], quantile, noise)
+                w[i] = weight[i] * _quantile_weight(e, first[k], quantile)
             else:
                 w[i] = weight[i] * _robust_weight(e, later[k - len(first)], below)
         gather(w, y, line, s, node, t, normal)
@@ -123,7 +122,7 @@ def settle(
     extra = 0 if first else EXTRA
     rows = np.flatnonzero(weight)
     at = tuple(part[rows] for part in places)
-    _settle(f, y[rows], weight[rows], *at, *bands, noise, quantile, below, *scales, TURNS, extra)
+    _settle(f, y[rows], weight[rows], *at, *bands, quantile, below, *scales, TURNS, extra)
     return Sheet(sheet.lattice, f)
 
 

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from sklearn.gaussian_process import GaussianProcessRegressor
 from sklearn.gaussian_process.kernels import RBF, ConstantKernel
 
-from datmo.ground.gp import correlation, evidence, grow, regress
+from datmo.ground.gp import correlation, expect, grow, regress
 
 
 def kernel(ra: np.ndarray, rb: np.ndarray, La: np.ndarray, Lb: np.ndarray) -> np.ndarray:
@@ -76,14 +76,19 @@ def test_prediction_and_evidence_are_scikit_learns_when_stationary() -> None:
     assert likelihood == pytest.approx(model.log_marginal_likelihood_value_, rel=1e-6)
 
 
-def test_evidence_sums_the_segments() -> None:
-    parts = [data(k, 12) for k in range(3)]
-    r, y, noise, L = (np.stack([p[k] for p in parts]) for k in range(4))
-    use = np.ones(r.shape, bool)
-    use[1, 4:] = False
-    none = np.empty(0)
-    single = [regress(*(a[m][use[m]] for a in (r, y, noise, L)), none, none, 1.0)[2:] for m in (0, 1)]
-    assert np.allclose(evidence(r, y, L, noise, use, np.array([0, 1])), np.sum(single, 0))
+def test_the_mean_alone_is_the_same_mean() -> None:
+    r, y, noise, L = data(2)
+    rq, Lq = np.linspace(0, 60, 40), np.linspace(1, 6, 40)
+    mean = regress(r, y, noise, L, rq, Lq, 0.04)[0]
+    assert np.allclose(expect(r, y, noise, L, rq, Lq, 0.04), mean, atol=1e-9)
+
+
+def test_nothing_seen_is_the_prior() -> None:
+    none, rq = np.empty(0), np.linspace(0, 60, 4)
+    mean, var, _, _ = regress(none, none, none, none, rq, np.ones(4), 0.04)
+    assert np.array_equal(mean, np.zeros(4))
+    assert np.array_equal(var, np.full(4, 0.04))
+    assert np.array_equal(expect(none, none, none, none, rq, np.ones(4), 0.04), np.zeros(4))
 
 
 def plain_growth(r, y, L, noise, seed, above, sf2, most_var, most_distance):  # type: ignore[no-untyped-def]
