@@ -7,6 +7,7 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from datmo import bins as shared
+from datmo.ground.lines import LineMethod
 
 Method = Literal["z", "z-se"]
 
@@ -34,6 +35,7 @@ class GroundConfig(BaseModel):
     reject: bool = Field(True, description="cells of large vertical extent count little")
     connect: bool = Field(True, description="cells that do not connect to the ground are left out")
 
+    lines: LineMethod = Field("incremental", description="extractor of the lines that `z` learns from")
     slope_max: float = Field(0.3, gt=0, description="ζ_slope, a line this steep is not ground [m/m]")
     line_rmse: float = Field(0.1, gt=0, description="T_RMSE [m]")
     line_join: float = Field(0.15, gt=0, description="a point this far off a line ends it [m]")

@@ -70,7 +70,7 @@ def describe(r: F64, y: F64, use: Bool, nodes: F64, config: GroundConfig) -> Dat
         config.line_small,
         config.line_intercept,
     )
-    at, at_nodes, _ = segment_slopes(r, y, use, nodes, as_array(rules), config.slope_default)
+    at, at_nodes, _ = segment_slopes(r, y, use, nodes, as_array(rules), config.slope_default, config.lines)
     low, high = config.slope_default, config.slope_clip
     return Data(r, y, use, -np.log(np.clip(at, low, high)), -np.log(np.clip(at_nodes, low, high)))
 
