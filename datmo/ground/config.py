@@ -7,6 +7,7 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from datmo import bins as shared
+from datmo.ground.lines import LineMethod
 
 Method = Literal["default", "z-se", "z", "zl", "zli"]
 Objective = Literal["whitened", "printed", "prior"]
@@ -18,7 +19,8 @@ class GroundConfig(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     method: Method = Field(
-        "default", description="default: tied field; z-se: one length-scale; z: lines; zl: latent; zli: noise too"
+        "default",
+        description="default: tied field; z-se: one length-scale; z: lines; zl: latent; zli: noise too",
     )
     segments: int = Field(shared.SEGMENTS, ge=12, le=720, description="M, sectors of the polar grid")
     bins: int = Field(shared.BINS, ge=10, le=400, description="N, bins of a segment")
@@ -38,6 +40,7 @@ class GroundConfig(BaseModel):
     reject: bool = Field(True, description="cells of large vertical extent count little")
     connect: bool = Field(True, description="cells that do not connect to the ground are left out")
 
+    lines: LineMethod = Field("incremental", description="extractor of the lines that `z` learns from")
     slope_max: float = Field(0.3, gt=0, description="ζ_slope, a line this steep is not ground [m/m]")
     line_rmse: float = Field(0.1, gt=0, description="T_RMSE [m]")
     line_join: float = Field(0.15, gt=0, description="a point this far off a line ends it [m]")

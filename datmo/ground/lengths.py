@@ -6,9 +6,11 @@ import numba
 import numpy as np
 
 from datmo.arrays import F64, I32, Bool
-from datmo.ground.lines import END, START, _extract
+from datmo.ground.lines import END, START
+from datmo.ground.lines.incremental import incremental
 
 SHORTEST, LONGEST = 1.0, 40.0
+NO_DRAWS = np.empty(0)
 
 
 @numba.njit(cache=True, nogil=True)
@@ -29,7 +31,7 @@ def log_lengths(
     ends, logs = np.empty(2 * N), np.empty(2 * N)
     for m in range(M):
         seen = np.flatnonzero(present[m])
-        k = _extract(r[m][seen], z[m][seen], len(seen), rules, lines)
+        k = incremental(r[m][seen], z[m][seen], rules, NO_DRAWS, lines)
         count[m] = k
         if k == 0:
             continue

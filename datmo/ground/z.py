@@ -102,5 +102,7 @@ class LineLengths(Shaped):
     def shape(self, cells: Cells) -> tuple[F64, F64, I32]:
         """See `Shaped`."""
         low, high = self.config.slope_default, self.config.slope_clip
-        at, at_nodes, lines = segment_slopes(cells.r, cells.y, cells.use, self.nodes, self.line_rules, low)
+        at, at_nodes, lines = segment_slopes(
+            cells.r, cells.y, cells.use, self.nodes, self.line_rules, low, self.config.lines
+        )
         return -np.log(np.clip(at, low, high)), -np.log(np.clip(at_nodes, low, high)), lines

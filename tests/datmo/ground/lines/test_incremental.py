@@ -58,3 +58,42 @@ def test_fit_is_total_least_squares() -> None:
 @pytest.mark.parametrize("n", [0, 1])
 def test_too_few_points_make_no_line(n: int) -> None:
     assert extract_lines(np.ones(n), np.ones(n)).shape == (0, 7)
+
+
+def by_hand(r: np.ndarray, z: np.ndarray, rules: LineRules) -> list[list[float]]:
+    """Alg. 1 as one reads it: fit with the next point by SVD; keep the line without it when it breaks."""
+
+    def tls(a: int, b: int) -> tuple[float, float, np.ndarray]:
+        points = np.column_stack([r[a:b], z[a:b]])
+        middle = points.mean(0)
+        _, values, axes = np.linalg.svd(points - middle, full_matrices=False)
+        angle = np.arctan(axes[0, 1] / axes[0, 0])
+        return angle, (values[1] if len(values) > 1 else 0.0) / np.sqrt(b - a), middle
+
+    lines, a = [], 0
+    while a < len(r) - 1:
+        b = a + 2
+        while b < len(r):
+            angle, _, middle = tls(a, b)
+            turned, rmse, _ = tls(a, b + 1)
+            off = abs(np.cos(angle) * (z[b] - middle[1]) - np.sin(angle) * (r[b] - middle[0]))
+            allowed = rules.turn + 2 * rules.rmse / (r[b] - r[a])
+            if off > rules.join or abs(turned - angle) > allowed or rmse > rules.rmse:
+                break
+            b += 1
+        angle, rmse, middle = tls(a, b)
+        slope = np.tan(angle)
+        lines.append([r[a], r[b - 1], slope, middle[1] - slope * middle[0], rmse, b - a])
+        a = b
+    return lines
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_the_same_as_by_hand(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    r = np.cumsum(rng.uniform(0.1, 1.2, 90))
+    z = np.cumsum(rng.normal(0, 0.08, 90))
+    rules = LineRules(join=0.05 + 0.02 * seed)
+    found = extract_lines(r, z, rules)
+    assert len(found) > 2
+    np.testing.assert_allclose(found[:, :GROUND], by_hand(r, z, rules), rtol=1e-6, atol=1e-7)
