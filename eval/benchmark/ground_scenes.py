@@ -6,14 +6,16 @@ import hashlib
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
+from scipy import fft
 
 import scenarios
 import sim
+from datmo.arrays import F64
 from datmo.errors import ConfigError
 from datmo.messages import Relief, Scan, Truth
 from eval.benchmark.ground_scenario import check_grade, entropy, rms_of, scenario_of
@@ -27,8 +29,8 @@ GRADES = (0.0, 5.0, 10.0, 15.0)
 APART = 10
 """Sweeps from one kept scan of a scene to the next."""
 LIBRARIES = ("numpy", "scipy", "numba", "highway-env", "embreex", "trimesh")
-PIXEL, SIDE = 0.25, 320.0
-"""Spacing and side of the height map of a stated rms [m]."""
+PIXEL, SIDE, LONGEST = 0.25, 320.0, 50.0
+"""Spacing, side and longest wave of the height map of a stated rms [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,9 +103,8 @@ def _made(
         name = f"{roughness}-{grade:g}"
         if on_scene is not None:
             on_scene(done, name)
-        arrays = kept(
-            _key(roughness, grade, seed, scans), lambda c=roughness, g=grade: _make(c, g, seed, scans)
-        )
+        key = _key(roughness, grade, seed, scans)
+        arrays = kept(key, partial(_make, roughness, grade, seed, scans))
         for k in range(scans):
             parts = (unpack(kind, arrays, f"{k}.{kind.__name__}") for kind in (Scan, Truth, Relief))
             yield Scene(f"{name}#{k}" if k else name, roughness, grade, *parts)  # type: ignore[arg-type]
@@ -133,12 +134,16 @@ def _play(scenario: Scenario, seed: Sequence[int], scans: int) -> Arrays:
     return arrays
 
 
-def _field(rms: float, seed: Sequence[int]) -> np.ndarray:
-    """A rough field (n, n) of exactly this rms, ISO 8608's spectrum, road and field alike [m]."""
+def _field(rms: float, seed: Sequence[int]) -> F64:
+    """A rough field (n, n) of this rms [m], with ISO 8608's spectrum up to waves of `LONGEST`.
+
+    Longer waves would hold most of the height, and none of what is rough within the scored radius.
+    """
     side = round(SIDE / PIXEL) + 1
     field = rough_field((side, side), PIXEL, "E", np.random.SeedSequence([*seed, 2]))
-    field -= field.mean()
-    return np.asarray(field * (rms / field.std()))
+    n = np.hypot(fft.fftfreq(side, PIXEL)[:, None], fft.rfftfreq(side, PIXEL)[None, :])
+    short = fft.irfft2(np.where(n >= 1 / LONGEST, fft.rfft2(field), 0), s=field.shape)
+    return np.asarray(short * (rms / short.std()))
 
 
 def _key(roughness: str, grade: float, seed: int, scans: int) -> str:
@@ -146,13 +151,13 @@ def _key(roughness: str, grade: float, seed: int, scans: int) -> str:
     digest = hashlib.sha256(_makers())
     file = None if rms_of(roughness) is None else "field"
     digest.update(scenario_of(roughness, grade, seed, file).model_dump_json().encode())
-    digest.update(repr((entropy(roughness, grade, seed), scans, APART, PIXEL, SIDE)).encode())
+    digest.update(repr((entropy(roughness, grade, seed), scans, APART, PIXEL, SIDE, LONGEST)).encode())
     return digest.hexdigest()
 
 
 @cache
 def _makers() -> bytes:
-    """Who makes scenes: the code of the simulator and of this file, its tables, the libraries under it."""
+    """Who makes scenes: the simulator's code and tables, this file, the libraries under it."""
     roots = [Path(p) for module in (sim, scenarios) for p in module.__path__]
     files = [p for root in roots for ending in ("*.py", "*.csv") for p in sorted(root.rglob(ending))]
     digest = hashlib.sha256(" ".join(f"{name} {version(name)}" for name in LIBRARIES).encode())
