@@ -8,6 +8,7 @@ import typer
 
 from datmo.errors import ConfigError
 from eval.commands import options as o
+from eval.commands.benchmark_ground import ground
 
 benchmark = typer.Typer(
     no_args_is_help=True,
@@ -23,6 +24,9 @@ Rounds = Annotated[int, typer.Option("--rounds", help="Sweeps of each number of 
 @benchmark.callback()
 def group() -> None:
     """Time this project beside a rival, interleaved in one process."""
+
+
+benchmark.command("ground")(ground)
 
 
 @benchmark.command("cast")
