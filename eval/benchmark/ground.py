@@ -54,7 +54,7 @@ def compare(
     Args:
         methods: names of `datmo.ground.METHODS`. rounds: over which times are medians.
         real: folder of real sweeps; None looks at the default place, and does without where it is empty.
-        tell: told how much is done (scenes, then sweeps).
+        tell: told how many scenes are done, and the name of the next one.
 
     Raises:
         ConfigError: an unknown method or scene, or no round. CloudFileError: no sweep in `real`.
@@ -64,7 +64,7 @@ def compare(
     (others, notes), (paths, note) = peers(), real_paths(real)
     everyone = [*own, *others]
     rows = play(everyone, grid.scenes(tell), rounds)
-    swept = play_real(everyone, paths, rounds, None if tell is None else _after(tell, len(grid)))
+    swept = play_real(everyone, paths, rounds)
     verdicts = [v for method in methods if (v := verdict(rows, method)) is not None]
     shown = [*tables(rows), *([real_table(swept)] if swept else [])]
     said = [*map(str, verdicts), *notes, *([note] if note else [])]
@@ -98,10 +98,6 @@ def anew(grid: Grid, methods: Sequence[str], rounds: int, tell: Tell | None = No
     lines = table51(check_methods(methods), grid.scenes(tell), rounds)
     extra = {"table51": [asdict(line) for line in lines]}
     return Report(_settings(grid, methods, rounds), [], [table51_rows(lines)], sentences(lines), extra)
-
-
-def _after(tell: Tell, done: int) -> Tell:
-    return lambda more, note: tell(done + more, note)
 
 
 def _settings(grid: Grid, methods: Sequence[str], rounds: int) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -75,29 +75,18 @@ def changed_scans(scan: Scan) -> dict[str, Scan]:
     return {name: replace(scan, points=points) for name, points in made.items()}
 
 
-def play_real(
-    contestants: Sequence[Contestant],
-    paths: Sequence[Path],
-    rounds: int,
-    on_frame: Callable[[int, str], None] | None = None,
-) -> list[RealRow]:
+def play_real(contestants: Sequence[Contestant], paths: Sequence[Path], rounds: int) -> list[RealRow]:
     """A row for each sweep and contestant.
-
-    Args:
-        on_frame: told how many sweeps are done, and the name of the next one.
 
     Raises:
         CloudFileError: a file cannot be read.
     """
     rows = []
-    for done, path in enumerate(paths):
+    for path in paths:
         labelled = path.name == "velodyne.bin"
-        name = path.parent.name if labelled else path.stem
-        if on_frame is not None:
-            on_frame(done, name)
-        frame = f"{'boxes' if labelled else 'frames'}/{name}"
-        for contestant, figures in _one(contestants, path, rounds, labelled):
-            rows.append(RealRow(frame, contestant, figures))
+        frame = f"boxes/{path.parent.name}" if labelled else f"frames/{path.stem}"
+        found = _one(contestants, path, rounds, labelled)
+        rows += [RealRow(frame, contestant, figures) for contestant, figures in found]
     return rows
 
 

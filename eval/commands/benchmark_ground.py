@@ -11,7 +11,7 @@ from datmo.errors import ConfigError
 from eval.commands import options as o
 
 if TYPE_CHECKING:
-    from eval.benchmark.ground import Grid, Tell
+    from eval.benchmark.ground import Grid
     from eval.benchmark.ground_report import Report
 
 CLASSES, QUICK_CLASSES = "A,B,C,D,E,F,G,H", "A,E"
@@ -63,38 +63,30 @@ def ground(
       datmo benchmark ground --ablation --quick
       datmo benchmark ground --table51 --classes A,C,E --grades 0,10
     """
-    from eval import console
-    from eval.benchmark.ground import Grid
-    from eval.benchmark.ground_report import write
     from eval.output import refuse_existing
 
     if out is not None:
         refuse_existing(out, force)
-    grid = Grid(
-        names("classes", classes or (QUICK_CLASSES if quick else CLASSES)),
-        numbers("grades", grades or (QUICK_GRADES if quick else GRADES)),
-        seed,
-        scans,
-    )
-    asked = None if methods is None else names("methods", methods)
-    with console.progress("scenes", len(grid)) as tell:
-        report = _made(grid, asked, rounds, real, ablation, table51, tell)
-    show(report)
-    if out is not None:
-        write(report, out, force)
-        console.stdout().print(f"written: {out}", markup=False)
+    grid = asked_grid(classes, grades, seed, scans, quick)
+    own = None if methods is None else names("methods", methods)
+    leave(made(grid, own, rounds, real, ablation, table51), out, force)
 
 
-def _made(
-    grid: Grid,
-    methods: list[str] | None,
-    rounds: int,
-    real: Path | None,
-    ablation: bool,
-    table51: bool,
-    tell: Tell,
+def asked_grid(classes: str | None, grades: str | None, seed: int, scans: int, quick: bool) -> Grid:
+    """The scenes that were asked for; what was not said is that of the whole or the quick grid."""
+    from eval.benchmark.ground import Grid
+
+    named = names("classes", classes if classes is not None else QUICK_CLASSES if quick else CLASSES)
+    steep = numbers("grades", grades if grades is not None else QUICK_GRADES if quick else GRADES)
+    return Grid(named, steep, seed, scans)
+
+
+def made(
+    grid: Grid, methods: list[str] | None, rounds: int, real: Path | None, ablation: bool, table51: bool
 ) -> Report:
+    """The answer to the question that was asked, with a bar while scenes are made and played."""
     from datmo.ground import METHODS
+    from eval import console
     from eval.benchmark.ground import ablate, anew, compare
     from eval.benchmark.ground_table51 import methods_there
 
@@ -102,11 +94,23 @@ def _made(
         raise ConfigError("--ablation and --table51 are two questions; give one of them")
     if ablation and methods is not None and len(methods) != 1:
         raise ConfigError(f"--methods {','.join(methods)}: --ablation takes one method apart; give one")
-    if ablation:
-        return ablate(grid, methods[0] if methods else None, rounds, tell)
-    if table51:
-        return anew(grid, methods or methods_there(), rounds, tell)
-    return compare(grid, methods or list(METHODS), rounds, real, tell)
+    with console.progress("scenes", len(grid)) as tell:
+        if ablation:
+            return ablate(grid, methods[0] if methods else None, rounds, tell)
+        if table51:
+            return anew(grid, methods or methods_there(), rounds, tell)
+        return compare(grid, methods or list(METHODS), rounds, real, tell)
+
+
+def leave(report: Report, out: Path | None, force: bool) -> None:
+    """Print what was found and, where asked, write it."""
+    from eval import console
+    from eval.benchmark.ground_report import write
+
+    show(report)
+    if out is not None:
+        write(report, out, force)
+        console.stdout().print(f"written: {out}", markup=False)
 
 
 def show(report: Report) -> None:
