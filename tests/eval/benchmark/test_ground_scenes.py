@@ -44,7 +44,7 @@ def test_a_scene_is_the_same_whatever_else_is_asked_for_and_wherever_it_comes_fr
     np.testing.assert_array_equal(first.relief.xy, grid_centres())
     assert not np.array_equal(first.scan.points, second.scan.points)
     with monkeypatch.context() as patch:
-        patch.setattr(ground_scenes, "_make", None)  # kept: not made again
+        patch.setattr(ground_scenes, "_make", lambda *_: pytest.fail("a kept scene was made again"))
         (kept,) = scenes(["C"], [5], seed=3)
     monkeypatch.setenv(store.cache.VARIABLE, "off")
     (anew,) = scenes(["C"], [5], seed=3)
