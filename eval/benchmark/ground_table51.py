@@ -92,7 +92,8 @@ def _frame(methods: Sequence[str], scene: Scene, rounds: int) -> list[Line]:
         Line(
             scene.name,
             method,
-            *counts,
+            n_pg,
+            n_l,
             ms_first=float(times[0, i]),
             ms=float(np.median(times[1:, i])),
             smse=error["smse"],
@@ -100,7 +101,7 @@ def _frame(methods: Sequence[str], scene: Scene, rounds: int) -> list[Line]:
             rmse_unseen=error["height_rmse_unseen"],
             hyper=hyper,
         )
-        for i, (method, ((*counts, hyper), error)) in enumerate(zip(methods, first, strict=True))
+        for i, (method, ((n_pg, n_l, hyper), error)) in enumerate(zip(methods, first, strict=True))
     ]
 
 

@@ -67,7 +67,8 @@ def verdict(rows: Sequence[Row], method: str) -> Verdict | None:
             short.append(row.scene)
     if not rival or not (counts[True][0] or counts[False][0]):
         return None
-    return Verdict(method, *counts[True], *counts[False], tuple(short))
+    (hard_ones, won), (easy_ones, held) = counts[True], counts[False]
+    return Verdict(method, hard_ones, won, easy_ones, held, tuple(short))
 
 
 def _better(row: Row, rival: dict[str, float | None]) -> bool:

@@ -9,7 +9,7 @@ import zipfile
 from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
-from typing import TypeVar, get_type_hints
+from typing import Any, TypeVar, get_type_hints
 
 import numpy as np
 
@@ -39,7 +39,8 @@ def unpack(kind: type[M], arrays: Arrays, prefix: str) -> M:
     Raises:
         KeyError: a field is missing.
     """
-    hints, values = get_type_hints(kind), {}
+    hints: dict[str, Any] = get_type_hints(kind)
+    values: dict[str, Any] = {}
     for field in fields(kind):
         name, hint = f"{prefix}.{field.name}", hints[field.name]
         if isinstance(hint, type) and issubclass(hint, Message):
