@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from rich.markup import escape
 from rich.table import Table
 
 from eval.benchmark.ground_ablation import Cost
@@ -78,9 +79,9 @@ def rich_table(table: Rows) -> Table:
     """For the terminal."""
     made = Table(box=None, header_style="bold", pad_edge=False)
     for i, head in enumerate(table.heads):
-        made.add_column(head, justify="left" if i < table.left else "right")
+        made.add_column(escape(head), justify="left" if i < table.left else "right")
     for row in table.rows:
-        made.add_row(*row)
+        made.add_row(*map(escape, row))
     return made
 
 
