@@ -74,9 +74,10 @@ class GroundConfig(BaseModel):
     join_distance: float = Field(3.0, gt=0, description="ζ_d, most standardised distance to join")
     refit: bool = Field(True, description="fit again on all ground points of each cell")
 
-    point_height: float = Field(0.12, gt=0, description="ζ_r at the sensor [m]")
+    point_height: float = Field(0.25, gt=0, description="ζ_r at the sensor [m]")
     point_range: float = Field(0.001, ge=0, description="growth of ζ_r with range [m/m]")
     point_slope: float = Field(0.1, ge=0, description="growth of ζ_r with the local residual slope [m]")
-    point_most: float = Field(0.35, gt=0, description="largest ζ_r [m]")
+    point_most: float = Field(0.4, gt=0, description="largest ζ_r [m]")
     point_below: float = Field(3.0, ge=1, description="below the ground ζ_r is this much larger")
-    foot_factor: float = Field(0.35, gt=0, le=1, description="share of ζ_r kept near feet of obstacles")
+    point_noise: float = Field(2.0, ge=0, description="least ζ_r in stds of an observation")
+    foot_factor: float = Field(0.22, gt=0, le=1, description="share of ζ_r kept near feet of obstacles")

@@ -192,7 +192,13 @@ class Field(Regression):
         none = np.zeros(0, np.int32)
         return Learned({"c": 1e-3}, none, none, none)
 
-    def grow(self, cells: Cells, seed: Bool, doubtful: Bool, learned: Learned) -> tuple[Bool, Heights]:
+    def grow(
+        self,
+        cells: Cells,
+        seed: Bool,  # noqa: ARG002 - the rounds find their own way from the sheet
+        doubtful: Bool,
+        learned: Learned,
+    ) -> tuple[Bool, Heights]:
         """Robust rounds: weights fall with the distance above the field, and less with that below."""
         c = np.full(cells.y.shape, learned.hyper["c"])
         out, across = links(c, self._r)
@@ -206,7 +212,8 @@ class Field(Regression):
             for _ in range(TURNS):
                 relax(f, w, y, out, across, self._ridge)
         member = cells.use & (np.abs(y - f) < self.config.seed_height) & ~doubtful
-        return member, self._heights(f, c * self._size, noise)
+        observed = self.config.noise_floor**2 + c * self._size
+        return member, self._heights(f, c * self._size, observed)
 
     def fit(self, cells: Cells, learned: Learned) -> tuple[Heights, Learned]:
         """The field through the cells' means, its roughness learned around each."""
@@ -224,7 +231,7 @@ class Field(Regression):
         between = self._between_share * c / np.maximum(conductance(cells.use, self._r), TINY)
         var = np.minimum(np.where(cells.use, seen, between), self.config.most_std**2)
         count, none = cells.use.sum(1).astype(np.int32), np.zeros(len(y), np.int32)
-        return self._heights(f, var, noise), Learned(
+        return self._heights(f, var, noise + c * self._size), Learned(
             {"c": frame}, count, none, none, frames=learned.frames + 1
         )
 

@@ -17,7 +17,8 @@ UNITS = 1e6
 @dataclass(frozen=True)
 class LimitRules:
     """ζ_r at the sensor [m], its growth with range [m/m] and slope [m], its most [m], how much
-    larger it is below the ground, and the share kept near feet of obstacles."""
+    larger it is below the ground, the share kept near feet of obstacles, and its least in stds of
+    an observation."""
 
     start: float
     by_range: float
@@ -25,6 +26,7 @@ class LimitRules:
     most: float
     below: float
     foot: float
+    by_noise: float
 
 
 @numba.njit(cache=True, nogil=True)
@@ -114,9 +116,18 @@ def cell_means(located: Located, e: F64, ground: Bool, least_noise: float) -> Ce
 
 
 @numba.njit(cache=True, nogil=True)
-def _limits(mean: F64, nodes: F64, start: float, by_range: float, by_slope: float, most: float) -> F64:
+def _limits(
+    mean: F64,
+    noise: F64,
+    nodes: F64,
+    start: float,
+    by_range: float,
+    by_slope: float,
+    most: float,
+    by_noise: float,
+) -> tuple[F64, F64]:
     M, N = len(mean), len(nodes) - 2
-    out, width = np.empty((M, N)), 4 * np.pi / M
+    out, rough, width = np.empty((M, N)), np.empty((M, N)), 4 * np.pi / M
     for m in range(M):
         before, after = mean[m - 1 if m > 0 else M - 1], mean[m + 1 if m + 1 < M else 0]
         for b in range(N):
@@ -124,25 +135,30 @@ def _limits(mean: F64, nodes: F64, start: float, by_range: float, by_slope: floa
             across = (after[b + 1] - before[b + 1]) / (width * nodes[b + 1])
             slope = np.hypot(along, across)
             out[m, b] = min(start + by_range * nodes[b + 1] + by_slope * slope, most)
-    return out
+            rough[m, b] = by_noise * np.sqrt(noise[m, b + 1])
+    return out, rough
 
 
-def limits(height: F64, nodes: F64, rules: LimitRules) -> F64:
-    """Threshold ζ_r (M, N) of each cell [m]: at the sensor + with range + with the slope of the
-    surface over its plane, up to the most.
+def limits(height: F64, noise: F64, nodes: F64, rules: LimitRules) -> tuple[F64, F64]:
+    """Thresholds (M, N) of each cell [m]: ζ_r, and what rough ground scatters by itself.
+
+    ζ_r is that at the sensor + with range + with the slope of the surface over its plane, up to the
+    most; the second is a multiple of the std of an observation about the surface (as Z-L-I has it).
 
     Args:
-        height: (M, N + 2) of the surface over its plane at the nodes (N + 2,) [m].
+        height: (M, N + 2) of the surface over its plane at the nodes (N + 2,) [m]. noise: (M, N + 2)
+        variance of an observation about it [m²].
     """
-    return np.asarray(_limits(height, nodes, rules.start, rules.by_range, rules.by_slope, rules.most))
+    numbers = (rules.start, rules.by_range, rules.by_slope, rules.most, rules.by_noise)
+    return _limits(height, noise, nodes, *numbers)
 
 
-def label_points(over: F64, cell: I32, limit: F64, rules: LimitRules) -> Bool:
-    """Which points (n,) are ground: within the limit of their cell, less at feet of obstacles.
+def label_points(over: F64, cell: I32, limit: F64, rough: F64, rules: LimitRules) -> Bool:
+    """Which points (n,) are ground: within the limits of their cell, less at feet of obstacles.
 
     Args:
-        over: (n,) height over the surface [m]. cell: (n,), -1 never ground. limit: (M, N) [m].
+        over: (n,) height over the surface [m]. cell: (n,), -1 never ground. limit, rough: of `limits`.
     """
     foot = foot_cells(over, cell, *limit.shape)
-    near = np.where(foot, rules.foot * limit, limit).ravel()
-    return np.asarray(near_surface(over, cell, near, limit.ravel() * rules.below))
+    above = np.maximum(np.where(foot, rules.foot * limit, limit), rough)
+    return np.asarray(near_surface(over, cell, above.ravel(), (rules.below * limit).ravel()))

@@ -77,7 +77,13 @@ class GroundSegmenter:
         edges = bin_edges(c.bins, c.blind, c.radius)
         self._grid = PolarGrid(c.segments, edges)
         self._limits = LimitRules(
-            c.point_height, c.point_range, c.point_slope, c.point_most, c.point_below, c.foot_factor
+            c.point_height,
+            c.point_range,
+            c.point_slope,
+            c.point_most,
+            c.point_below,
+            c.foot_factor,
+            c.point_noise,
         )
         self._expect = GroundExpectation(self._grid, c)
         self._regression = regression(self._grid, c)
@@ -113,16 +119,17 @@ class GroundSegmenter:
         seen, heights = self._regression.grow(lowest, expected.seed, expected.doubtful, self.learned)
         if config.refit:
             over = PolarSurface(plane, grid.nodes, level + heights.mean, heights.var).below(located)
-            is_ground = self._label(over, located.cell, level + heights.mean)
+            is_ground = self._label(over, located.cell, level, heights)
             seen, heights = self._refit(located, over, is_ground, heights.mean)
         surface = self._surface(plane, expected.sheet, level, seen, heights)
         over, std = surface.below_with_std(located)
-        is_ground = self._label(over, located.cell, surface.mean)
+        is_ground = self._label(over, located.cell, level, heights)
         return Ground(is_ground, points[:, 2] - over, std, surface)
 
-    def _label(self, over: F64, cell: I32, height: F64) -> Bool:
-        """Which points at `over` the surface (n,) [m] are ground; its height over the plane (M, Q) [m]."""
-        return label_points(over, cell, limits(height, self._grid.nodes, self._limits), self._limits)
+    def _label(self, over: F64, cell: I32, level: F64, heights: Heights) -> Bool:
+        """Which points at `over` the surface (n,) [m] are ground; it lies at level + heights."""
+        both = limits(level + heights.mean, heights.noise, self._grid.nodes, self._limits)
+        return label_points(over, cell, *both, self._limits)
 
     def _plane(self, cells: Candidates) -> F64:
         """The local slope from the lowest points of the cells within `plane_radius`."""

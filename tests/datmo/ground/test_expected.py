@@ -2,9 +2,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from datmo.ground.coarse import SheetRules, basis, flat_sheet, settle, solve, value
 
 from datmo.bins import bin_edges
-from datmo.ground.coarse import SheetRules, basis, flat_sheet, settle, solve, value
 from datmo.ground.connectivity import components, connected, readmitted
 from datmo.ground.grid import PolarGrid
 from datmo.ground.plane import robust_plane
