@@ -80,13 +80,13 @@ def relax(f: F64, w: F64, y: F64, out: F64, across: F64, ridge: float) -> None:
 
 @numba.njit(cache=True, nogil=True)
 def roughness(y: F64, use: Bool, noise: F64, r: F64, start: float) -> tuple[F64, float]:
-    """c (M, N) around each cell, and of the frame [m]: Σ (Δy² - noise) / Σ d over pairs of neighbouring cells.
+    """c (M, N) around each cell, and of the frame [m]: Σ (Δy² - noise) / Σ d over neighbouring cells.
 
     Pairs are a cell and the next used one outwards or in the next line; a local window shares with the frame
     as if that were a few more pairs.
 
     Args:
-        y: (M, N) height of each cell [m]. noise: (M, N) variance of its error [m²]. start: c without any pair.
+        y: (M, N) height of each cell [m]. noise: (M, N) variance of its error [m²]. start: c without pairs.
     """
     M, N = y.shape
     square, span = np.zeros((M, N)), np.zeros((M, N))
@@ -113,7 +113,7 @@ def roughness(y: F64, use: Bool, noise: F64, r: F64, start: float) -> tuple[F64,
 
 @numba.njit(cache=True, nogil=True)
 def _window(square: F64, span: F64, frame: float) -> F64:
-    """Sums over a window about each cell, wrapped around, with the frame's value as `PRIOR_CELLS` more cells."""
+    """c by sums over a window about each cell; the frame weighs as `PRIOR_CELLS` more cells."""
     M, N = square.shape
     s, d = np.zeros((M, N)), np.zeros((M, N))
     for m in range(M):

@@ -110,7 +110,7 @@ def cell_means(located: Located, e: F64, ground: Bool, least_noise: float) -> Ce
     over, square, r, azimuth = sums[1:] / (UNITS * np.maximum(n, 1))
     # Scatter within cells of one bin: each cell has few points, a ring of cells has many.
     spread = (np.maximum(square - over**2, 0) * n).sum(0) / np.maximum((n - 1).clip(0).sum(0), 1)
-    middle = np.arange(M)[:, None] + np.where(n > 0, azimuth, 0.5)
+    middle = np.arange(M, dtype=float)[:, None] + np.where(n > 0, azimuth, 0.5)
     noise = np.broadcast_to(spread, (M, N)) / np.maximum(n, 1) + least_noise
     return CellMeans(n > 0, over, np.where(n > 0, r, grid.centers), middle, noise)
 

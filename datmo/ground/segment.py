@@ -124,7 +124,7 @@ class GroundSegmenter:
         surface = self._surface(plane, expected.sheet, level, seen, heights)
         over, std = surface.below_with_std(located)
         is_ground = self._label(over, located.cell, level, heights)
-        return Ground(is_ground, points[:, 2] - over, std, surface)
+        return Ground(is_ground, (points[:, 2] - over).astype(np.float32), std, surface)
 
     def _label(self, over: F64, cell: I32, level: F64, heights: Heights) -> Bool:
         """Which points at `over` the surface (n,) [m] are ground; it lies at level + heights."""

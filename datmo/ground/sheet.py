@@ -34,7 +34,7 @@ def coarse_lattice(segments: int, centers: F64) -> Lattice:
 
 @numba.njit(cache=True, nogil=True)
 def _quantile_weight(e: float, scale: float, low: float) -> float:
-    return (low if e > 0 else 1 - low) * scale / np.hypot(e, scale)
+    return float((low if e > 0 else 1 - low) * scale / np.hypot(e, scale))
 
 
 @numba.njit(cache=True, nogil=True)
@@ -121,7 +121,8 @@ def settle(
     bands = prior.bands, prior.next, prior.second
     extra = 0 if first else EXTRA
     rows = np.flatnonzero(weight)
-    at = tuple(part[rows] for part in places)
+    line, s, node, t = places
+    at = line[rows], s[rows], node[rows], t[rows]
     _settle(f, y[rows], weight[rows], *at, *bands, quantile, below, *scales, TURNS, extra)
     return Sheet(sheet.lattice, f)
 
@@ -139,7 +140,7 @@ def learned_bend(sheet: Sheet, seen: Bool, radius: float) -> float:
     M, N = seen.shape
     padded = np.zeros((sheet.lattice.lines * THIRD, len(r) * THIRD), bool)
     padded[:M, :N] = seen
-    nodes = padded.reshape(sheet.lattice.lines, THIRD, len(r), THIRD).any((1, 3))
+    nodes: Bool = np.any(padded.reshape(sheet.lattice.lines, THIRD, len(r), THIRD), axis=(1, 3))
     known = nodes[:, 2:] & nodes[:, 1:-1] & nodes[:, :-2] & (r[1:-1] < radius)
     h = np.diff(r)
     bends = (np.diff(f, axis=1) / h)[:, 1:] - (np.diff(f, axis=1) / h)[:, :-1]

@@ -32,7 +32,7 @@ def _blend(s: float, q: int, t: float, table: F64) -> float:
     a, b = (m if m >= 0 else M - 1), (m + 1 if m + 1 < M else 0)
     low = (1 - t) * table[a, q] + t * table[a, q + 1]
     high = (1 - t) * table[b, q] + t * table[b, q + 1]
-    return (1 - f) * low + f * high
+    return float((1 - f) * low + f * high)
 
 
 @numba.njit(cache=True, nogil=True)
@@ -96,9 +96,9 @@ def over_points(
 @numba.njit(cache=True, nogil=True)
 def at_cells(table: F64, nodes: F64, azimuth: F64, radius: F64) -> F64:
     """Bilinear value of table (M, Q) at one place in each cell, azimuths [segments] and radii (M, N) [m]."""
-    out = np.empty(radius.shape)
-    for m in range(out.shape[0]):
-        for b in range(out.shape[1]):
+    out = np.empty_like(radius)
+    for m in range(len(table)):
+        for b in range(radius.shape[1]):
             q, t = _corner(nodes, radius[m, b])
             out[m, b] = _blend(azimuth[m, b] - 0.5, q, t, table)
     return out
