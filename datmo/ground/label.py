@@ -9,6 +9,7 @@ import numpy as np
 
 from datmo.arrays import F64, I32, I64, Bool
 from datmo.ground.grid import Located
+from datmo.ground.threads import blocks, each, over_rows
 
 FOOT_LOW, FOOT_HIGH, FOOT_CELLS = 0.3, 2.5, 2
 UNITS = 1e6
@@ -37,29 +38,28 @@ def foot_cells(e: F64, cell: I32, M: int, N: int) -> Bool:
     Args:
         e: (n,) height of each point over the surface [m]. cell: (n,).
     """
-    has = np.zeros((M, N), np.bool_)
+    held = np.zeros(M * N, np.bool_)
     for i in range(len(e)):
-        if cell[i] >= 0 and FOOT_LOW < e[i] < FOOT_HIGH:
-            has.flat[cell[i]] = True
-    foot = np.zeros((M, N), np.bool_)
+        if FOOT_LOW < e[i] < FOOT_HIGH and cell[i] >= 0:
+            held[cell[i]] = True
+    has = held.reshape(M, N)
+    foot, count = np.zeros((M, N), np.bool_), np.zeros(N + 2, np.int64)
     for m in range(M):
+        before, after = has[m - 1 if m > 0 else M - 1], has[m + 1 if m + 1 < M else 0]
         for b in range(N):
-            count = 0
-            for o in range(m - 1, m + 2):
-                for c in range(max(b - 1, 0), min(b + 2, N)):
-                    count += has[o % M, c]
-            foot[m, b] = count >= FOOT_CELLS
+            count[b + 1] = before[b] + has[m, b] + after[b]
+        for b in range(N):
+            foot[m, b] = count[b] + count[b + 1] + count[b + 2] >= FOOT_CELLS
     return foot
 
 
 @numba.njit(cache=True, nogil=True)
-def near_surface(e: F64, cell: I32, above: F64, below: F64) -> Bool:
-    """Ground (n,) where -below <= e <= above, both (M * N,) of the point's cell [m]."""
-    out = np.zeros(len(e), np.bool_)
+def near_surface(e: F64, cell: I32, out: Bool, band: F64) -> None:
+    """Ground, written to `out` (n,), where e is within the lowest and highest of the point's cell, band
+    (M * N, 2) [m]."""
     for i in range(len(e)):
-        if cell[i] >= 0:
-            out[i] = -below[cell[i]] <= e[i] <= above[cell[i]]
-    return out
+        c = cell[i]
+        out[i] = c >= 0 and band[c, 0] <= e[i] <= band[c, 1]
 
 
 @dataclass(frozen=True)
@@ -80,20 +80,20 @@ class CellMeans:
 
 @numba.njit(cache=True, nogil=True)
 def _cell_sums(e: F64, azimuth: F64, radius: F64, cell: I32, ground: Bool, cells: int) -> I64:
-    """(5, cells): number, Σ height, Σ height², Σ range and Σ azimuth of each cell's ground points.
+    """(cells, 5): number, Σ height, Σ height², Σ range and Σ azimuth of each cell's ground points.
 
     In whole micrometres (square millimetres; millionths of a segment): exact, so no order of the
     points decides.
     """
-    out = np.zeros((5, cells), np.int64)
+    out = np.zeros((cells, 5), np.int64)
     for i in range(len(e)):
-        c = cell[i]
-        if c >= 0 and ground[i]:
-            out[0, c] += 1
-            out[1, c] += np.int64(np.rint(e[i] * UNITS))
-            out[2, c] += np.int64(np.rint(e[i] * e[i] * UNITS))
-            out[3, c] += np.int64(np.rint(radius[i] * UNITS))
-            out[4, c] += np.int64(np.rint((azimuth[i] - np.floor(azimuth[i])) * UNITS))
+        if ground[i]:
+            at = out[cell[i]]
+            at[0] += 1
+            at[1] += np.int64(np.rint(e[i] * UNITS))
+            at[2] += np.int64(np.rint(e[i] * e[i] * UNITS))
+            at[3] += np.int64(np.rint(radius[i] * UNITS))
+            at[4] += np.int64(np.rint((azimuth[i] - int(azimuth[i])) * UNITS))
     return out
 
 
@@ -105,7 +105,10 @@ def cell_means(located: Located, e: F64, ground: Bool, least_noise: float) -> Ce
     """
     grid = located.grid
     M, N = grid.shape
-    sums = _cell_sums(e, located.azimuth, located.radius, located.cell, ground, M * N).reshape(5, M, N)
+    arrays = (e, located.azimuth, located.radius, located.cell, ground)
+    halves = [slice(*rows) for rows in blocks(len(e), 2)]
+    first, second = each(lambda rows: _cell_sums(*(a[rows] for a in arrays), M * N), halves)
+    sums = (first + second).T.reshape(5, M, N)
     n = sums[0]
     over, square, r, azimuth = sums[1:] / (UNITS * np.maximum(n, 1))
     # Scatter within cells of one bin: each cell has few points, a ring of cells has many.
@@ -133,7 +136,7 @@ def _limits(
         for b in range(N):
             along = (mean[m, b + 2] - mean[m, b]) / (nodes[b + 2] - nodes[b])
             across = (after[b + 1] - before[b + 1]) / (width * nodes[b + 1])
-            slope = np.hypot(along, across)
+            slope = np.sqrt(along * along + across * across)
             out[m, b] = min(start + by_range * nodes[b + 1] + by_slope * slope, most)
             rough[m, b] = by_noise * np.sqrt(noise[m, b + 1])
     return out, rough
@@ -161,4 +164,7 @@ def label_points(over: F64, cell: I32, limit: F64, rough: F64, rules: LimitRules
     """
     foot = foot_cells(over, cell, *limit.shape)
     above = np.maximum(np.where(foot, rules.foot * limit, limit), rough)
-    return np.asarray(near_surface(over, cell, above.ravel(), (rules.below * limit).ravel()))
+    band = np.stack([-rules.below * limit, above], -1).reshape(-1, 2)
+    is_ground = np.empty(len(over), bool)
+    over_rows(near_surface, (over, cell, is_ground), (band,))
+    return is_ground

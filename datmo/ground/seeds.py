@@ -10,7 +10,7 @@ from datmo.arrays import F64, Bool
 from datmo.ground import connectivity
 from datmo.ground.config import GroundConfig
 from datmo.ground.grid import Candidates, PolarGrid
-from datmo.ground.lattice import corners, evaluate, prior
+from datmo.ground.lattice import Lattice, corners, evaluate, prior
 from datmo.ground.sheet import Sheet, coarse_lattice, flat_sheet, settle
 
 EXTENT, EXTENT_SLOPE = 0.25, 0.6
@@ -50,6 +50,22 @@ def block_lowest(height: F64, present: Bool, block: int) -> Bool:
     return np.asarray(whole[:M, :N] & present)
 
 
+class _Low:
+    """The candidates of one scan over its plane, and where they stand on the sheet's lattice."""
+
+    def __init__(self, cells: Candidates, plane: F64, grid: PolarGrid, lattice: Lattice) -> None:
+        self.height = cells.above(plane)
+        self._present, self._shape = cells.present, grid.shape
+        azimuth, r = cells.azimuth.ravel(), cells.r.ravel()
+        self.places = corners(azimuth, r, lattice.lines, grid.segments, lattice.radii)
+
+    def over(self, sheet: Sheet) -> F64:
+        """Height (M, N) of the candidates over a sheet [m], 0 where there is none."""
+        return np.where(
+            self._present, self.height - evaluate(sheet.f, *self.places).reshape(self._shape), 0.0
+        )
+
+
 class GroundExpectation:
     """Finds the expected ground and the seeds; holds the lattice and its prior, nothing of a frame."""
 
@@ -62,46 +78,40 @@ class GroundExpectation:
         self._size = np.hypot(np.diff(grid.edges), grid.centers * 2 * np.pi / grid.segments)
 
     def __call__(self, cells: Candidates, plane: F64) -> Expected:
-        """The expected ground of one scan.
-
-        A first sheet goes through the lowest candidates of blocks of cells. Low cells that connect to
-        the ground about the sensor carry the next; components that come to lie on it join for the last.
-
-        Args:
-            plane: (3,) z = a x + b y + c, the local slope.
-        """
-        grid, config, flat = self._grid, self.config, self._flat
-        height = cells.above(plane)
+        """The expected ground of one scan over its local slope, z = a x + b y + c of `plane` (3,)."""
+        config = self.config
         extent = cells.extent - np.hypot(plane[0], plane[1]) * self._size
         steep = cells.present & (extent > self._steep) & config.reject
-        weight = np.where(steep, OBSTACLE_WEIGHT, 1.0).ravel()
-        lattice = flat.lattice
-        places = corners(cells.azimuth.ravel(), cells.r.ravel(), lattice.lines, grid.segments, lattice.radii)
-
-        def draw(use: Bool, start: Sheet, first: bool) -> Sheet:
-            if not config.coarse:
-                return start
-            w = weight * use.ravel()
-            return settle(
-                start, height.ravel(), w, places, self._prior, config.coarse_noise, config.asymmetric, first
-            )
-
-        def over(sheet: Sheet) -> F64:
-            e = height - evaluate(sheet.f, *places).reshape(grid.shape)
-            return np.where(cells.present, e, 0)
-
-        sheet = draw(block_lowest(height, cells.present, BLOCK), flat, True)
-        usable = cells.present
-        if config.connect:
-            e = over(sheet)
-            label = connectivity.components(cells.r, e, height, cells.present & (e < LOW) & ~steep)
-            usable = connectivity.connected(cells.r, label, grid.areas)
-            sheet = draw(usable, sheet, False)
-            e = over(sheet)
-            usable = usable | connectivity.readmitted(label, usable, e, grid.areas)
-            usable |= steep & (np.abs(e) < connectivity.STEP)
-        sheet = draw(usable, sheet, False)
-        e = over(sheet)
+        low = _Low(cells, plane, self._grid, self._flat.lattice)
+        sheet, usable = self._draw(low, cells, steep)
+        e = low.over(sheet)
         doubtful = steep & (e > 0)
         seed = usable & ~doubtful & (np.abs(e) < config.seed_height) & (cells.r < config.seed_radius)
         return Expected(sheet, e, usable, doubtful, seed)
+
+    def _draw(self, low: _Low, cells: Candidates, steep: Bool) -> tuple[Sheet, Bool]:
+        """The sheet, and the candidates (M, N) that carry it.
+
+        A first sheet goes through the lowest candidates of blocks of cells. Low cells that connect to the
+        ground about the sensor carry the next, steep ones left out; components and steep cells that come
+        to lie on it join for the last.
+        """
+        if not self.config.coarse:
+            return self._flat, cells.present
+        weight, areas = np.where(steep, OBSTACLE_WEIGHT, 1.0), self._grid.areas
+        sheet = self._settle(low, block_lowest(low.height, cells.present, BLOCK) * weight, self._flat, True)
+        usable = cells.present
+        if self.config.connect:
+            e = low.over(sheet)
+            label = connectivity.components(cells.r, e, low.height, cells.present & (e < LOW) & ~steep)
+            usable = connectivity.connected(cells.r, label, areas)
+            sheet = self._settle(low, usable * weight, sheet, False)
+            e = low.over(sheet)
+            usable = usable | connectivity.readmitted(label, usable, e, areas)
+            usable |= steep & (np.abs(e) < connectivity.STEP)
+        return self._settle(low, usable * weight, sheet, False), usable
+
+    def _settle(self, low: _Low, weight: F64, start: Sheet, first: bool) -> Sheet:
+        noise, asymmetric = self.config.coarse_noise, self.config.asymmetric
+        y, w = low.height.ravel(), weight.ravel()
+        return settle(start, y, w, low.places, self._prior, noise, asymmetric, first)
