@@ -20,8 +20,9 @@ from datmo.ground.sheet import Sheet, learned_bend
 from datmo.ground.surface import PolarSurface, at_cells, gaps
 from datmo.messages import Ground
 
-DRIFT = 0.7  # what is unseen strays so much less than the sheet bends; fitted as in `field`
+DRIFT = 0.8  # what is unseen strays so much less than the sheet bends; fitted as in `field`
 BEND_RADIUS = 50.0  # [m]
+CURVE = 2.5
 LEAST_NOISE = 0.001**2  # of a cell's mean: the calibration of rings against each other [m²]
 
 
@@ -156,8 +157,9 @@ class GroundSegmenter:
         """The sheet's `level` at the nodes and the regression's heights, joined; the deviation grows away
         from the cells (M, N) that were seen, faster the more the sheet bends."""
         grid, config = self._grid, self.config
-        drift = max(DRIFT * learned_bend(sheet, seen, BEND_RADIUS), config.drift)
-        away = np.minimum(drift * gaps(seen, grid.centers, grid.nodes), config.most_std)
+        turn, curve = learned_bend(sheet, seen, BEND_RADIUS)
+        d = gaps(seen, grid.centers, grid.nodes)
+        away = np.minimum(max(DRIFT * turn, config.drift) * d + CURVE * curve * d**2 / 2, config.most_std)
         mean, std = level + heights.mean, np.sqrt(heights.var + away**2)
         # All segments share the place of their first node, the sensor's foot.
         mean[:, 0], std[:, 0] = mean[:, 0].mean(), std[:, 0].mean()

@@ -22,6 +22,7 @@ LATER_SCALES = np.array([2.0, 1.0])
 TURNS, EXTRA = 2, 6
 BELOW = 3.0
 MEDIAN_OF_NORMAL, FEWEST = 0.6745, 10
+FAR_LAG = 3
 
 Places = tuple[I64, F64, I64, F64]
 
@@ -127,22 +128,29 @@ def settle(
     return Sheet(sheet.lattice, f)
 
 
-def learned_bend(sheet: Sheet, seen: Bool, radius: float) -> float:
-    """τ of the prior as the sheet shows it: the robust std of its second difference over h, by h [m/m].
+def learned_bend(sheet: Sheet, seen: Bool, radius: float) -> tuple[float, float]:
+    """How the sheet bends where it was seen: robust std of its change of slope from node to node [m/m],
+    and of its curvature over far nodes [1/m].
 
-    The height of what is not seen is about that uncertain, times the distance to what is. 0 where
-    fewer than ten places tell.
+    The height at d from what is seen strays about as the first times d plus half the second times d². 0
+    where fewer than ten places tell.
 
     Args:
         seen: (M, N) cells of the grid with ground. radius: places farther than this do not count [m].
     """
-    r, f = sheet.lattice.radii, sheet.f
+    lattice = sheet.lattice
     M, N = seen.shape
-    padded = np.zeros((sheet.lattice.lines * THIRD, len(r) * THIRD), bool)
+    padded = np.zeros((lattice.lines * THIRD, len(lattice.radii) * THIRD), bool)
     padded[:M, :N] = seen
-    nodes: Bool = np.any(padded.reshape(sheet.lattice.lines, THIRD, len(r), THIRD), axis=(1, 3))
-    known = nodes[:, 2:] & nodes[:, 1:-1] & nodes[:, :-2] & (r[1:-1] < radius)
-    h = np.diff(r)
-    bends = (np.diff(f, axis=1) / h)[:, 1:] - (np.diff(f, axis=1) / h)[:, :-1]
-    told = np.abs(bends[known])
-    return float(np.median(told) / MEDIAN_OF_NORMAL) if len(told) >= FEWEST else 0.0
+    near = lattice.radii < radius
+    nodes = np.any(padded.reshape(lattice.lines, THIRD, -1, THIRD), axis=(1, 3))[:, near]
+    r, f = lattice.radii[near], sheet.f[:, near]
+
+    def spread(lag: int, power: int) -> float:
+        known = nodes[:, 2 * lag :] & nodes[:, lag:-lag] & nodes[:, : -2 * lag]
+        slope = (f[:, lag:] - f[:, :-lag]) / (r[lag:] - r[:-lag])
+        h = (r[2 * lag :] - r[: -2 * lag]) / 2
+        told = (np.abs(slope[:, lag:] - slope[:, :-lag]) / h**power)[known]
+        return float(np.median(told) / MEDIAN_OF_NORMAL) if len(told) >= FEWEST else 0.0
+
+    return spread(1, 0), spread(FAR_LAG, 1)
