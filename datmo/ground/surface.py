@@ -83,8 +83,11 @@ def over_points(
         if np.isnan(s):
             over[i], std[i] = np.nan, np.nan
             continue
-        q = min(int(np.searchsorted(nodes, r, side="right")) - 1, N) if cell[i] < 0 else cell[i] - int(s) * N
-        q += 1 if cell[i] >= 0 and r >= nodes[q + 1] else 0
+        if cell[i] >= 0:
+            q = cell[i] - int(s) * N
+            q += int(r >= nodes[q + 1])
+        else:
+            q = min(int(np.searchsorted(nodes, r, side="right")) - 1, N)
         t = min((r - nodes[q]) * inverse[q], 1.0)
         s += 0.5  # from the middle of the last segment
         f = s - int(s)
