@@ -206,15 +206,15 @@ def conductance(use: Bool, r: F64) -> F64:
                     g[m, b] += 1 / abs(r[b] - r[last])
                 if use[m, b]:
                     last = b
-    for b in range(N):
-        for step in (1, -1):
-            last = -10 * M
-            for k in range(2 * M):
-                m = (k if step > 0 else 2 * M - 1 - k) % M
-                if k >= M and last > -M and k > last:
-                    g[m, b] += 1 / ((k - last) * width * r[b])
+    for step in (1, -1):
+        last = np.full(N, -10 * M)
+        for k in range(2 * M):
+            m = (k if step > 0 else 2 * M - 1 - k) % M
+            for b in range(N):
+                if k >= M and last[b] > -M:
+                    g[m, b] += 1 / ((k - last[b]) * width * r[b])
                 if use[m, b]:
-                    last = k
+                    last[b] = k
     return g
 
 

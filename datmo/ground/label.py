@@ -106,14 +106,30 @@ def cell_means(located: Located, e: F64, ground: Bool, least_noise: float) -> Ce
     arrays = (e, located.azimuth, located.radius, located.cell, ground)
     halves = [slice(*rows) for rows in blocks(len(e), 2)]
     first, second = each(lambda rows: _cell_sums(*(a[rows] for a in arrays), M * N), halves)
-    sums = (first + second).T.reshape(5, M, N)
-    n = sums[0]
-    over, square, r, azimuth = sums[1:] / (UNITS * np.maximum(n, 1))
-    # Scatter within cells of one bin: each cell has few points, a ring of cells has many.
-    spread = (np.maximum(square - over**2, 0) * n).sum(0) / np.maximum((n - 1).clip(0).sum(0), 1)
-    middle = np.arange(M)[:, None] + np.where(n > 0, azimuth, 0.5)
-    noise = np.broadcast_to(spread, (M, N)) / np.maximum(n, 1) + least_noise
-    return CellMeans(n > 0, over, np.where(n > 0, r, grid.centers), middle, noise)
+    means = _means((first + second).reshape(M, N, 5), grid.centers, least_noise)
+    return CellMeans(means[0] > 0, *means[1:])
+
+
+@numba.njit(cache=True, nogil=True)
+def _means(sums: I64, centers: F64, least_noise: float) -> F64:
+    """(5, M, N): number, and the columns of `CellMeans`, from `_cell_sums` (M, N, 5)."""
+    M, N, _ = sums.shape
+    out, scatter, free = np.zeros((5, M, N)), np.zeros(N), np.zeros(N)
+    number, over, r, azimuth, noise = out
+    for m in range(M):
+        for b in range(N):
+            n, r[m, b], azimuth[m, b] = sums[m, b, 0], centers[b], m + 0.5
+            if n > 0:
+                number[m, b], share = n, 1 / (UNITS * n)
+                over[m, b], r[m, b] = sums[m, b, 1] * share, sums[m, b, 3] * share
+                azimuth[m, b] = m + sums[m, b, 4] * share
+                # Scatter within cells of one bin: each cell has few points, a ring of cells has many.
+                scatter[b] += max(sums[m, b, 2] * share - over[m, b] ** 2, 0.0) * n
+                free[b] += n - 1
+    for m in range(M):
+        for b in range(N):
+            noise[m, b] = scatter[b] / max(free[b], 1.0) / max(number[m, b], 1.0) + least_noise
+    return out
 
 
 @numba.njit(cache=True, nogil=True)
