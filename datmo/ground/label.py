@@ -9,7 +9,6 @@ import numpy as np
 
 from datmo.arrays import F64, I32, I64, Bool
 from datmo.ground.grid import Located
-from datmo.ground.threads import blocks, each, over_rows
 
 FOOT_LOW, FOOT_HIGH, FOOT_CELLS = 0.3, 2.5, 2
 UNITS = 1e6
@@ -52,12 +51,13 @@ def foot_cells(e: F64, cell: I32, M: int, N: int) -> Bool:
 
 
 @numba.njit(cache=True, nogil=True)
-def near_surface(e: F64, cell: I32, out: Bool, band: F64) -> None:
-    """Ground, written to `out` (n,), where e is within the lowest and highest of the point's cell, band
-    (M * N, 2) [m]."""
+def near_surface(e: F64, cell: I32, band: F64) -> Bool:
+    """Ground (n,) where e is within the lowest and highest of the point's cell, band (M * N, 2) [m]."""
+    out = np.zeros(len(e), np.bool_)
     for i in range(len(e)):
         c = cell[i]
         out[i] = c >= 0 and band[c, 0] <= e[i] <= band[c, 1]
+    return out
 
 
 @dataclass(frozen=True)
@@ -104,9 +104,7 @@ def cell_means(located: Located, e: F64, ground: Bool, least_noise: float) -> Ce
     grid = located.grid
     M, N = grid.shape
     arrays = (e, located.azimuth, located.radius, located.cell, ground)
-    halves = [slice(*rows) for rows in blocks(len(e), 2)]
-    first, second = each(lambda rows: _cell_sums(*(a[rows] for a in arrays), M * N), halves)
-    means = _means((first + second).reshape(M, N, 5), grid.centers, least_noise)
+    means = _means(_cell_sums(*arrays, M * N).reshape(M, N, 5), grid.centers, least_noise)
     return CellMeans(means[0] > 0, *means[1:])
 
 
@@ -164,6 +162,5 @@ def label_points(over: F64, cell: I32, limit: F64, rules: LimitRules) -> Bool:
     """
     foot = foot_cells(over, cell, *limit.shape)
     band = np.stack([-rules.below * limit, np.where(foot, rules.foot * limit, limit)], -1).reshape(-1, 2)
-    is_ground = np.empty(len(over), bool)
-    over_rows(near_surface, (over, cell, is_ground), (band,))
-    return is_ground
+    # Too short for handing it to threads to pay.
+    return np.asarray(near_surface(over, cell, band))

@@ -141,9 +141,11 @@ def learned_bend(sheet: Sheet, seen: Bool, radius: float) -> float:
     M, N = seen.shape
     padded = np.zeros((sheet.lattice.lines * THIRD, len(r) * THIRD), bool)
     padded[:M, :N] = seen
-    nodes = padded.reshape(sheet.lattice.lines, THIRD, len(r), THIRD).any((1, 3))
+    lines = padded[0::THIRD] | padded[1::THIRD] | padded[2::THIRD]
+    nodes = lines[:, 0::THIRD] | lines[:, 1::THIRD] | lines[:, 2::THIRD]
     known = nodes[:, 2:] & nodes[:, 1:-1] & nodes[:, :-2] & (r[1:-1] < radius)
     h = np.diff(r)
-    bends = (np.diff(f, axis=1) / h)[:, 1:] - (np.diff(f, axis=1) / h)[:, :-1]
+    slopes = np.diff(f, axis=1) / h
+    bends = slopes[:, 1:] - slopes[:, :-1]
     told = np.abs(bends[known])
     return float(np.median(told) / MEDIAN_OF_NORMAL) if len(told) >= FEWEST else 0.0
