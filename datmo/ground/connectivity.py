@@ -55,9 +55,9 @@ def components(r: F64, e: F64, z: F64, low: Bool) -> I32:
             if not low[m, b]:
                 continue
             rb, eb, zb = r[m, b], e[m, b], z[m, b]
-            if last >= 0 and rb - r[m, last] <= REACH + REACH_SLOPE * rb:
-                if _steps(rb - r[m, last], eb - e[m, last], zb - z[m, last]):
-                    _join(parent, m * N + last, m * N + b)
+            near = last >= 0 and rb - r[m, last] <= REACH + REACH_SLOPE * rb
+            if near and _steps(rb - r[m, last], eb - e[m, last], zb - z[m, last]):
+                _join(parent, m * N + last, m * N + b)
             last = b
             for c in range(max(b - SIDE, 0), min(b + SIDE + 1, N)):
                 if low[o, c]:

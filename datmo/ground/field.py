@@ -207,14 +207,14 @@ def conductance(use: Bool, r: F64) -> F64:
                 if use[m, b]:
                     last = b
     for step in (1, -1):
-        last = np.full(N, -10 * M)
+        latest = np.full(N, -10 * M)
         for k in range(2 * M):
             m = (k if step > 0 else 2 * M - 1 - k) % M
             for b in range(N):
-                if k >= M and last[b] > -M:
-                    g[m, b] += 1 / ((k - last[b]) * width * r[b])
+                if k >= M and latest[b] > -M:
+                    g[m, b] += 1 / ((k - latest[b]) * width * r[b])
                 if use[m, b]:
-                    last[b] = k
+                    latest[b] = k
     return g
 
 

@@ -213,7 +213,7 @@ def _merge(points: F32, rows: I32, heights: F32, multipath: float) -> tuple[I32,
 
 @numba.njit(cache=True, nogil=True)
 def _place(points: F32, azimuth: F64, radius: F64, index: I32, columns: F64) -> None:
-    """x, y, z, azimuth and range of the points `index`, written to the `columns` (5, cells) of their cells."""
+    """x, y, z, azimuth and range of the points `index`, written to `columns` (5, cells)."""
     x, y, z, turn, r = columns
     for c in range(len(index)):
         i = index[c]
@@ -268,4 +268,5 @@ class Located:
         index, extent = _merge(self.points, rows, heights, multipath)
         columns = np.array(self.grid.middle)
         _place(self.points, self.azimuth, self.radius, index, columns)
-        return Candidates((index >= 0).reshape(M, N), *columns.reshape(5, M, N), extent.reshape(M, N))
+        x, y, z, azimuth, r = columns.reshape(5, M, N)
+        return Candidates((index >= 0).reshape(M, N), x, y, z, azimuth, r, extent.reshape(M, N))

@@ -34,7 +34,7 @@ def coarse_lattice(segments: int, centers: F64) -> Lattice:
 
 @numba.njit(cache=True, nogil=True)
 def _quantile_weight(e: float, scale: float, low: float) -> float:
-    return (low if e > 0 else 1 - low) * scale / np.sqrt(e * e + scale * scale)
+    return float((low if e > 0 else 1 - low) * scale / np.sqrt(e * e + scale * scale))
 
 
 @numba.njit(cache=True, nogil=True)
