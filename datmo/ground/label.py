@@ -9,7 +9,6 @@ import numpy as np
 
 from datmo.arrays import F64, I32, I64, Bool
 from datmo.ground.grid import Located
-from datmo.ground.threads import blocks, each, over_rows
 
 FOOT_LOW, FOOT_HIGH, FOOT_CELLS = 0.3, 2.5, 2
 UNITS = 1e6
@@ -54,12 +53,13 @@ def foot_cells(e: F64, cell: I32, M: int, N: int) -> Bool:
 
 
 @numba.njit(cache=True, nogil=True)
-def near_surface(e: F64, cell: I32, out: Bool, band: F64) -> None:
-    """Ground, written to `out` (n,), where e is within the lowest and highest of the point's cell, band
-    (M * N, 2) [m]."""
+def near_surface(e: F64, cell: I32, band: F64) -> Bool:
+    """Ground (n,) where e is within the lowest and highest of the point's cell, band (M * N, 2) [m]."""
+    out = np.zeros(len(e), np.bool_)
     for i in range(len(e)):
         c = cell[i]
         out[i] = c >= 0 and band[c, 0] <= e[i] <= band[c, 1]
+    return out
 
 
 @dataclass(frozen=True)
@@ -106,16 +106,30 @@ def cell_means(located: Located, e: F64, ground: Bool, least_noise: float) -> Ce
     grid = located.grid
     M, N = grid.shape
     arrays = (e, located.azimuth, located.radius, located.cell, ground)
-    halves = [slice(*rows) for rows in blocks(len(e), 2)]
-    first, second = each(lambda rows: _cell_sums(*(a[rows] for a in arrays), M * N), halves)
-    sums = (first + second).T.reshape(5, M, N)
-    n = sums[0]
-    over, square, r, azimuth = sums[1:] / (UNITS * np.maximum(n, 1))
-    # Scatter within cells of one bin: each cell has few points, a ring of cells has many.
-    spread = (np.maximum(square - over**2, 0) * n).sum(0) / np.maximum((n - 1).clip(0).sum(0), 1)
-    middle = np.arange(M, dtype=float)[:, None] + np.where(n > 0, azimuth, 0.5)
-    noise = np.broadcast_to(spread, (M, N)) / np.maximum(n, 1) + least_noise
-    return CellMeans(n > 0, over, np.where(n > 0, r, grid.centers), middle, noise)
+    means = _means(_cell_sums(*arrays, M * N).reshape(M, N, 5), grid.centers, least_noise)
+    return CellMeans(means[0] > 0, *means[1:])
+
+
+@numba.njit(cache=True, nogil=True)
+def _means(sums: I64, centers: F64, least_noise: float) -> F64:
+    """(5, M, N): number, and the columns of `CellMeans`, from `_cell_sums` (M, N, 5)."""
+    M, N, _ = sums.shape
+    out, scatter, free = np.zeros((5, M, N)), np.zeros(N), np.zeros(N)
+    number, over, r, azimuth, noise = out
+    for m in range(M):
+        for b in range(N):
+            n, r[m, b], azimuth[m, b] = sums[m, b, 0], centers[b], m + 0.5
+            if n > 0:
+                number[m, b], share = n, 1 / (UNITS * n)
+                over[m, b], r[m, b] = sums[m, b, 1] * share, sums[m, b, 3] * share
+                azimuth[m, b] = m + sums[m, b, 4] * share
+                # Scatter within cells of one bin: each cell has few points, a ring of cells has many.
+                scatter[b] += max(sums[m, b, 2] * share - over[m, b] ** 2, 0.0) * n
+                free[b] += n - 1
+    for m in range(M):
+        for b in range(N):
+            noise[m, b] = scatter[b] / max(free[b], 1.0) / max(number[m, b], 1.0) + least_noise
+    return out
 
 
 @numba.njit(cache=True, nogil=True)
@@ -165,6 +179,5 @@ def label_points(over: F64, cell: I32, limit: F64, rough: F64, rules: LimitRules
     foot = foot_cells(over, cell, *limit.shape)
     above = np.maximum(np.where(foot, rules.foot * limit, limit), rough)
     band = np.stack([-rules.below * limit, above], -1).reshape(-1, 2)
-    is_ground = np.empty(len(over), bool)
-    over_rows(near_surface, (over, cell, is_ground), (band,))
-    return is_ground
+    # Too short for handing it to threads to pay.
+    return np.asarray(near_surface(over, cell, band))

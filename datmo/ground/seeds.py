@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numba
 import numpy as np
 
 from datmo.arrays import F64, Bool
@@ -37,17 +38,22 @@ class Expected:
     seed: Bool
 
 
+@numba.njit(cache=True, nogil=True)
 def block_lowest(height: F64, present: Bool, block: int) -> Bool:
     """The lowest candidate (M, N) of each block x block cells; of equals the first."""
     M, N = height.shape
-    rows, columns = -(-M // block), -(-N // block)
-    padded = np.full((rows * block, columns * block), np.inf)
-    padded[:M, :N] = np.where(present, height, np.inf)
-    blocks = padded.reshape(rows, block, columns, block).swapaxes(1, 2).reshape(rows * columns, -1)
-    best = np.zeros_like(blocks, bool)
-    best[np.arange(len(blocks)), blocks.argmin(1)] = True
-    whole = best.reshape(rows, columns, block, block).swapaxes(1, 2).reshape(padded.shape)
-    return np.asarray(whole[:M, :N] & present)
+    out, columns = np.zeros((M, N), np.bool_), -(-N // block)
+    best, at = np.full(columns, np.inf), np.zeros(columns, np.int64)
+    for m in range(M):
+        for b in range(N):
+            if present[m, b] and height[m, b] < best[b // block]:
+                best[b // block], at[b // block] = height[m, b], m * N + b
+        if m % block == block - 1 or m == M - 1:
+            for k in range(columns):
+                if best[k] < np.inf:
+                    out[at[k] // N, at[k] % N] = True
+            best[:] = np.inf
+    return out
 
 
 class _Low:

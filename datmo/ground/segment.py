@@ -12,11 +12,12 @@ from datmo.errors import ConfigError, MessageError, nearest
 from datmo.ground.config import GroundConfig
 from datmo.ground.grid import Candidates, Located, PolarGrid
 from datmo.ground.label import LimitRules, cell_means, label_points, limits
+from datmo.ground.lattice import corners, evaluate
 from datmo.ground.methods import METHODS, regression
 from datmo.ground.plane import robust_plane
 from datmo.ground.regression import Cells, Heights
 from datmo.ground.seeds import GroundExpectation
-from datmo.ground.sheet import Sheet, learned_bend
+from datmo.ground.sheet import Sheet, coarse_lattice, learned_bend
 from datmo.ground.surface import PolarSurface, at_cells, gaps
 from datmo.messages import Ground
 
@@ -87,6 +88,8 @@ class GroundSegmenter:
             c.point_noise,
         )
         self._expect = GroundExpectation(self._grid, c)
+        lattice = coarse_lattice(c.segments, self._grid.centers)
+        self._nodes = corners(*self._grid.node_places, lattice.lines, c.segments, lattice.radii)
         self._regression = regression(self._grid, c)
         self.learned = self._regression.start()
 
@@ -115,7 +118,7 @@ class GroundSegmenter:
         cells = located.candidates(config.multipath)
         plane = self._plane(cells)
         expected = self._expect(cells, plane)
-        level = expected.sheet.at(*grid.node_places, grid.segments).reshape(grid.segments, -1)
+        level = evaluate(expected.sheet.f, *self._nodes).reshape(grid.segments, -1)
         lowest = Cells(cells.r, expected.e, expected.usable, cells.azimuth)
         seen, heights = self._regression.grow(lowest, expected.seed, expected.doubtful, self.learned)
         if config.refit:

@@ -12,7 +12,7 @@ import numba
 import numpy as np
 
 from datmo.arrays import F64, I64, Bool
-from datmo.ground.lattice import Lattice, Prior, corners, evaluate, gather, relax
+from datmo.ground.lattice import Lattice, Prior, corners, evaluate, factor, gather, relax
 
 THIRD = 3
 QUANTILE = 0.35
@@ -35,13 +35,14 @@ def coarse_lattice(segments: int, centers: F64) -> Lattice:
 
 @numba.njit(cache=True, nogil=True)
 def _quantile_weight(e: float, scale: float, low: float) -> float:
-    return float((low if e > 0 else 1 - low) * scale / np.hypot(e, scale))
+    return float((low if e > 0 else 1 - low) * scale / np.sqrt(e * e + scale * scale))
 
 
 @numba.njit(cache=True, nogil=True)
 def _robust_weight(e: float, scale: float, below: float) -> float:
     u = e / (below * scale) if e < 0 else e / scale
-    return 1 / (1 + u * u) ** 2
+    fall = 1 + u * u
+    return 1 / (fall * fall)
 
 
 @numba.njit(cache=True, nogil=True)
@@ -75,8 +76,9 @@ def _settle(
         gather(w, y, line, s, node, t, normal)
         if k == 0 and len(first) == 0:
             f[:] = np.where(normal[0] > 0.0, f, 0.0)  # what bore on these nodes is out
+        factors = factor(normal, bands)
         for _ in range(turns + (extra if k == len(first) + len(later) - 1 else 0)):
-            relax(f, normal, bands, near, second, 0, len(f))
+            relax(f, normal, factors, near, second)
 
 
 @dataclass(frozen=True)
@@ -143,7 +145,8 @@ def learned_bend(sheet: Sheet, seen: Bool, radius: float) -> tuple[float, float]
     padded = np.zeros((lattice.lines * THIRD, len(lattice.radii) * THIRD), bool)
     padded[:M, :N] = seen
     near = lattice.radii < radius
-    nodes = np.any(padded.reshape(lattice.lines, THIRD, -1, THIRD), axis=(1, 3))[:, near]
+    lines = padded[0::THIRD] | padded[1::THIRD] | padded[2::THIRD]
+    nodes = (lines[:, 0::THIRD] | lines[:, 1::THIRD] | lines[:, 2::THIRD])[:, near]
     r, f = lattice.radii[near], sheet.f[:, near]
 
     def spread(lag: int, power: int) -> float:

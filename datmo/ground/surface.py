@@ -83,8 +83,11 @@ def over_points(
         if np.isnan(s):
             over[i], std[i] = np.nan, np.nan
             continue
-        q = min(int(np.searchsorted(nodes, r, side="right")) - 1, N) if cell[i] < 0 else cell[i] - int(s) * N
-        q += 1 if cell[i] >= 0 and r >= nodes[q + 1] else 0
+        if cell[i] >= 0:
+            q = cell[i] - int(s) * N
+            q += int(r >= nodes[q + 1])
+        else:
+            q = min(int(np.searchsorted(nodes, r, side="right")) - 1, N)
         t = min((r - nodes[q]) * inverse[q], 1.0)
         s += 0.5  # from the middle of the last segment
         f = s - int(s)
@@ -122,20 +125,24 @@ def gaps(seen: Bool, bins: F64, nodes: F64) -> F64:
         seen: (M, N). bins: (N,) where the cells stand [m]. nodes: (Q,) [m].
     """
     M, Q = len(seen), len(nodes)
-    gap = np.full((M, Q), np.inf)
+    gap, column, step = np.full((M, Q), np.inf), np.searchsorted(nodes, bins), np.diff(nodes)
     for m in range(M):
-        for b in np.flatnonzero(seen[m]):
-            q = np.searchsorted(nodes, bins[b])
-            gap[m, q] = min(gap[m, q], abs(nodes[q] - bins[b]))
+        row = gap[m]
+        for b in range(len(bins)):
+            if seen[m, b]:
+                q = column[b]
+                row[q] = min(row[q], abs(nodes[q] - bins[b]))
         for q in range(1, Q):
-            gap[m, q] = min(gap[m, q], gap[m, q - 1] + nodes[q] - nodes[q - 1])
+            row[q] = min(row[q], row[q - 1] + step[q - 1])
         for q in range(Q - 2, -1, -1):
-            gap[m, q] = min(gap[m, q], gap[m, q + 1] + nodes[q + 1] - nodes[q])
+            row[q] = min(row[q], row[q + 1] + step[q])
     arc = 2 * np.pi / M * nodes
-    for m in range(2 * M):
-        gap[m % M] = np.minimum(gap[m % M], gap[(m - 1) % M] + arc)
-    for m in range(2 * M, 0, -1):
-        gap[m % M] = np.minimum(gap[m % M], gap[(m + 1) % M] + arc)
+    for way in (1, -1):
+        for k in range(2 * M):
+            m = k % M if way > 0 else M - 1 - k % M
+            before = m - way if 0 <= m - way < M else (M - 1 if way > 0 else 0)
+            for q in range(Q):
+                gap[m, q] = min(gap[m, q], gap[before, q] + arc[q])
     return gap
 
 
