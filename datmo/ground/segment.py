@@ -24,6 +24,7 @@ from datmo.messages import Ground
 DRIFT = 0.8  # what is unseen strays so much less than the sheet bends; fitted as in `field`
 BEND_RADIUS = 50.0  # [m]
 CURVE = 2.5
+NOTHING = 1e6  # m, farther than any grid reaches
 LEAST_NOISE = 0.001**2  # of a cell's mean: the calibration of rings against each other [m²]
 
 
@@ -128,7 +129,9 @@ class GroundSegmenter:
         surface = self._surface(plane, expected.sheet, level, seen, heights)
         over, std = surface.below_with_std(located)
         is_ground = self._label(over, located.cell, level, heights)
-        return Ground(is_ground, (points[:, 2] - over).astype(np.float32), std, surface)
+        with np.errstate(invalid="ignore"):  # a point at an infinite height has none of its own
+            height = (points[:, 2] - over).astype(np.float32)
+        return Ground(is_ground, height, std, surface)
 
     def _label(self, over: F64, cell: I32, level: F64, heights: Heights) -> Bool:
         """Which points at `over` the surface (n,) [m] are ground; it lies at level + heights."""
@@ -161,8 +164,9 @@ class GroundSegmenter:
         from the cells (M, N) that were seen, faster the more the sheet bends."""
         grid, config = self._grid, self.config
         turn, curve = learned_bend(sheet, seen, BEND_RADIUS)
-        d = gaps(seen, grid.centers, grid.nodes)
-        away = np.minimum(max(DRIFT * turn, config.drift) * d + CURVE * curve * d**2 / 2, config.most_std)
+        d = np.minimum(gaps(seen, grid.centers, grid.nodes), NOTHING)
+        away = max(DRIFT * turn, config.drift) * d + CURVE * curve * d**2 / 2
+        away = np.where(d < NOTHING, np.minimum(away, config.most_std), config.most_std)
         mean, std = level + heights.mean, np.sqrt(heights.var + away**2)
         # All segments share the place of their first node, the sensor's foot.
         mean[:, 0], std[:, 0] = mean[:, 0].mean(), std[:, 0].mean()

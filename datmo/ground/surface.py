@@ -69,12 +69,8 @@ def over_points(
     table: F64,
     spread: F64,
 ) -> None:
-    """Height of each point over the surface [m] and, if asked, the surface's deviation there, written to
-    `over` (n,) and `std` (n,); NaN where x or y is not finite.
-
-    As `interpolate`; a cell tells its column without a search. `_blend` is written out: the loop runs over
-    all points, and a call with arrays costs as much as the rest.
-    """
+    """Height of each point over the surface and, if asked, its deviation [m], written to `over`, `std`."""
+    # As `interpolate`, with `_blend` written out: a call with arrays costs as much as the rest.
     M, N, last = len(table), len(nodes) - 2, nodes[-1]
     slope_x, slope_y, level = plane
     inverse = 1 / np.diff(nodes)
@@ -91,18 +87,14 @@ def over_points(
         t = min((r - nodes[q]) * inverse[q], 1.0)
         s += 0.5  # from the middle of the last segment
         f = s - int(s)
-        a, b = int(s) - 1, int(s)
-        a, b = a if a >= 0 else M - 1, b if b < M else 0
-        low, high = table[a, q], table[b, q]
-        low += t * (table[a, q + 1] - low)
-        high += t * (table[b, q + 1] - high)
+        a, b = (int(s) - 1) % M, int(s) % M
+        low = (1 - t) * table[a, q] + t * table[a, q + 1]
+        high = (1 - t) * table[b, q] + t * table[b, q + 1]
         height = slope_x * points[i, 0] + slope_y * points[i, 1] + level
         over[i] = points[i, 2] - height - low - f * (high - low)
         if with_std:
-            low, high = spread[a, q], spread[b, q]
-            low += t * (spread[a, q + 1] - low)
-            high += t * (spread[b, q + 1] - high)
-            low += f * (high - low)
+            low = (1 - f) * spread[a, q] + f * spread[b, q]
+            low += t * ((1 - f) * spread[a, q + 1] + f * spread[b, q + 1] - low)
             std[i] = low if r <= last else np.hypot(low, BEYOND * (r - last))
 
 

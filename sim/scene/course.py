@@ -28,7 +28,6 @@ class Lane:
         length: along the centre [m]. width: [m].
         crossing: shares ground with a lane that it neither leads to nor comes from.
         entry, leaving: nothing leads to it; it leads nowhere.
-        added: by which its end was carried on beyond that of highway-env's own lane [m].
     """
 
     key: Key
@@ -38,7 +37,6 @@ class Lane:
     crossing: bool = False
     entry: bool = False
     leaving: bool = False
-    added: float = 0.0
 
     def at(self, arc: F64) -> F64:
         """Points (m, 2) at arc lengths (m,) from its start."""

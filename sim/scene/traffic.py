@@ -40,9 +40,8 @@ EXTEND = 200.0
 """Roads that end are made longer by this much [m]."""
 
 EGO_ID = 0
-AHEAD, ASIDE, BENT = 6.0, 2.5, np.deg2rad(75)
-"""A lane goes on in another that begins within so much of its end, along and across, and turns so much:
-the arms of roundabout-generic meet their ring at 66 degrees."""
+AHEAD, ASIDE, BENT = 6.0, 2.5, np.pi / 3
+"""A lane goes on in another that begins within so much of its end, along and across, and turns so much."""
 FAR = 2000.0  # courses are at least this long where the road allows [m]
 _IDM = {"DISTANCE_WANTED": 10.0, "COMFORT_ACC_MAX": 3.0, "COMFORT_ACC_MIN": -5.0}
 """Of highway-env's IDM; its intersection leaves them changed for every environment of the process."""
@@ -169,14 +168,12 @@ def extend(network: RoadNetwork) -> dict[Key, Lane]:
     lanes = network.lanes_dict()
     joints = [(a, b) for a in lanes for b in lanes if a != b and goes_on(lanes[a], lanes[b])]
     led_to, leading = {b for _, b in joints}, {a for a, _ in joints}
-    listed: dict[Key, tuple[bool, bool, float]] = {}
+    listed: dict[Key, tuple[bool, bool]] = {}
     for key, lane in lanes.items():
-        entry, leaving = key not in led_to, key not in leading
-        more = EXTEND if type(lane) is StraightLane else 0.0
-        listed[key] = entry, leaving, more * leaving
-        if more and (entry or leaving):
-            a = lane.position(-more * entry, 0)
-            b = lane.position(lane.length + more * leaving, 0)
+        listed[key] = entry, leaving = key not in led_to, key not in leading
+        if type(lane) is StraightLane and (entry or leaving):
+            a = lane.position(-EXTEND if entry else 0.0, 0)
+            b = lane.position(lane.length + (EXTEND if leaving else 0.0), 0)
             lane.__init__(a, b, lane.width, lane.line_types, lane.forbidden, lane.speed_limit, lane.priority)
     lines = {}
     for key, lane in lanes.items():
@@ -225,7 +222,7 @@ class Highway:
         lane, ego = network.get_lane(self.first), scenario.ego
         arc = float(lane.local_coordinates(position)[0])
         if ego.start is not None:
-            arc = max(lane.length - self.lanes[self.first].added - ego.start, 5.0)
+            arc = max(lane.length - EXTEND * self.lanes[self.first].leaving - ego.start, 5.0)
         self.start = mirrored(lane.position(arc, 0))
         self._arc = arc
 
