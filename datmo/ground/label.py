@@ -12,6 +12,7 @@ from datmo.ground.grid import Located
 
 FOOT_LOW, FOOT_HIGH, FOOT_CELLS = 0.3, 2.5, 2
 UNITS = 1e6
+POINTS = 4.0  # of a cell, as its mean's noise reckons: the true number would make copies matter
 
 
 @dataclass(frozen=True)
@@ -125,10 +126,10 @@ def _means(sums: I64, centers: F64, least_noise: float) -> F64:
                 azimuth[m, b] = m + sums[m, b, 4] * share
                 # Scatter within cells of one bin: each cell has few points, a ring of cells has many.
                 scatter[b] += max(sums[m, b, 2] * share - over[m, b] ** 2, 0.0) * n
-                free[b] += n - 1
+                free[b] += n
     for m in range(M):
         for b in range(N):
-            noise[m, b] = scatter[b] / max(free[b], 1.0) / max(number[m, b], 1.0) + least_noise
+            noise[m, b] = scatter[b] / max(free[b], 1.0) / POINTS + least_noise
     return out
 
 

@@ -105,17 +105,19 @@ class GroundExpectation:
         if not self.config.coarse:
             return self._flat, cells.present
         weight, areas = np.where(steep, OBSTACLE_WEIGHT, 1.0), self._grid.areas
-        sheet = self._settle(low, block_lowest(low.height, cells.present, BLOCK) * weight, self._flat, True)
+        sheet = self._settle(
+            low, np.where(block_lowest(low.height, cells.present, BLOCK), weight, 0.0), self._flat, True
+        )
         usable = cells.present
         if self.config.connect:
             e = low.over(sheet)
             label = connectivity.components(cells.r, e, low.height, cells.present & (e < LOW) & ~steep)
             usable = connectivity.connected(cells.r, label, areas)
-            sheet = self._settle(low, usable * weight, sheet, False)
+            sheet = self._settle(low, np.where(usable, weight, 0.0), sheet, False)
             e = low.over(sheet)
             usable = usable | connectivity.readmitted(label, usable, e, areas)
             usable |= steep & (np.abs(e) < connectivity.STEP)
-        return self._settle(low, usable * weight, sheet, False), usable
+        return self._settle(low, np.where(usable, weight, 0.0), sheet, False), usable
 
     def _settle(self, low: _Low, weight: F64, start: Sheet, first: bool) -> Sheet:
         noise, asymmetric = self.config.coarse_noise, self.config.asymmetric
