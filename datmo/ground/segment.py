@@ -35,7 +35,7 @@ def segment_ground(
 
     Args:
         points: (n, 3) [m, sensor frame: x forward, y left, z up].
-        method: a name of `METHODS`; None takes the config's ("z").
+        method: a name of `METHODS`; None takes the config's ("default").
         config: thresholds; None takes the defaults.
         keep: (n,) points that take part (see `datmo.refine`); None takes all.
 
