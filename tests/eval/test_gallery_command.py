@@ -6,8 +6,10 @@ import pytest
 
 from eval.cli import call
 from eval.commands.gallery import text
-from sim.picture import gallery
+from sim.picture.gallery import SHEETS
+from sim.picture.gallery.exhibits import things
 from sim.picture.gallery.listing import catalogue
+from sim.picture.gallery.sheet import Cell, exhibit
 from sim.scene.scenery.kinds import SORTS
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -23,14 +25,14 @@ def test_list_tells_every_asset(capsys) -> None:
 
 
 def test_gallery_writes_sheets_and_a_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
-    def cells() -> list[gallery.Cell]:
-        return [gallery.exhibit(gallery.things()[0])]
+    def cells() -> list[Cell]:
+        return [exhibit(things()[0])]
 
-    few = dict.fromkeys(gallery.SHEETS, (cells, 1))
-    monkeypatch.setattr(gallery, "SHEETS", few)
+    for name in SHEETS:
+        monkeypatch.setitem(SHEETS, name, (cells, 1))
     out = tmp_path / "show"
     assert call(["gallery", "--out", str(out)]) == 0
-    assert {p.name for p in out.iterdir()} == {f"{name}.png" for name in gallery.SHEETS}
+    assert {p.name for p in out.iterdir()} == {f"{name}.png" for name in SHEETS}
     page = (tmp_path / "show.md").read_text()
     assert "(show/things.png)" in page
     assert all(f"`{kind}`" in page for kind in SORTS)
@@ -41,5 +43,5 @@ def test_gallery_writes_sheets_and_a_page(tmp_path: Path, monkeypatch: pytest.Mo
 
 def test_the_page_in_docs_is_of_today() -> None:
     assert (DOCS / "gallery.md").read_text() == text(catalogue(), "gallery"), "run `datmo gallery --force`"
-    for name in gallery.SHEETS:
+    for name in SHEETS:
         assert (DOCS / "gallery" / f"{name}.png").stat().st_size < 600_000

@@ -77,7 +77,7 @@ def test_the_picture_is_a_picture(tiny: Scenario) -> None:
 
 
 def test_unknown_ground_names_the_choices(tiny: Scenario) -> None:
-    with pytest.raises(ConfigError, match="z-se"):
+    with pytest.raises(ConfigError, match="'z' or 'zl' or 'zli'"):
         make_testbed(tiny, ground="zz")
 
 

@@ -6,7 +6,6 @@ import gymnasium as gym
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
-from gymnasium.vector import AsyncVectorEnv, SyncVectorEnv
 
 from datmo.errors import ScenarioError, SimulationError
 from scenarios.spec import Scenario
@@ -76,20 +75,6 @@ def test_a_closed_environment_may_be_closed_and_reset_again(tiny: Scenario) -> N
 def test_unknown_scenario_names_the_nearest() -> None:
     with pytest.raises(ScenarioError, match="rough-crossing"):
         LidarEnv("rough-crosing")
-
-
-def test_vector_environments_agree(tiny: Scenario) -> None:
-    def make() -> gym.Env:
-        return gym.make("sim:datmo/Lidar-v0", scenario=tiny)
-
-    scans = []
-    for vector in (SyncVectorEnv([make, make]), AsyncVectorEnv([make, make], context="spawn")):
-        obs, _ = vector.reset(seed=4)
-        again = vector.step(np.zeros(2, np.int64))[0]
-        scans.append([obs["range"].copy(), again["range"].copy()])
-        vector.close()
-    np.testing.assert_array_equal(scans[0], scans[1])
-    assert not np.array_equal(scans[0][0][0], scans[0][0][1])
 
 
 @pytest.mark.parametrize("module", ["sim:datmo/Lidar-v0", "eval:datmo/Testbed-v0"])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -26,6 +27,7 @@ class Row:
     note: str
 
 
+@cache
 def catalogue() -> dict[str, list[Row]]:
     """Rows by group, as the sheets are named; the presets of scenery have none."""
     return {

@@ -125,7 +125,9 @@ def test_its_gait_follows_the_way_walked() -> None:
     assert set(phases) == set(range(16))
 
 
-@pytest.mark.parametrize("block", range(5))
+@pytest.mark.parametrize(
+    "block", [0, *(pytest.param(block, marks=pytest.mark.long) for block in range(1, 5))]
+)
 def test_two_who_meet_head_on_pass(block: int) -> None:
     for seed in range(10 * block, 10 * block + 10):
         walks = [walk(start=(0, -6), goal=(0, 6)), walk(start=(0, 6), goal=(0, -6))]
@@ -174,7 +176,9 @@ def test_people_leave_the_way_of_a_scripted_car() -> None:
     assert people.walkers[1].speed == pytest.approx(0.0, abs=1e-6)
 
 
-@pytest.mark.parametrize("size", [2, 3, 5])
+@pytest.mark.parametrize(
+    "size", [pytest.param(2, marks=pytest.mark.long), 3, pytest.param(5, marks=pytest.mark.long)]
+)
 def test_a_group_stays_together_and_crosses_as_one(size: int) -> None:
     for seed in range(4):
         people = crowd(walk(group=size, start=(0, -9), goal=(0, 9)), seed=seed)

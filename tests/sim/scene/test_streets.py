@@ -60,7 +60,7 @@ def overlap(a: State, b: State) -> float:
     return overlap_bev(*corners_bev(np.array([a.xy, b.xy]), size, np.array([a.yaw, b.yaw])))
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.long) for seed in (1, 2, 3))])
 def test_nobody_is_run_over_and_those_who_come_brake(seed: int) -> None:
     world = World(STREET, np.random.SeedSequence(seed))
     knots = states_of(world)
