@@ -21,7 +21,7 @@ from datmo.errors import ScenarioError, nearest
 from datmo.geometry import wrap_angle
 from scenarios.spec import Scenario
 from sim.scene.autopilot import STEP, Mover
-from sim.scene.course import Course, Key, Lane, crossings, follow
+from sim.scene.course import NEAR, Course, Key, Lane, crossings, follow, onward
 from sim.scene.population import Arrival, asking
 from sim.scene.vehicles import Body, State
 
@@ -164,19 +164,30 @@ def goes_on(lane: Any, onward: Any) -> bool:
     return bool(abs(along) < AHEAD and abs(aside) < ASIDE and abs(turn) < BENT)
 
 
+def _open(lane: Any, others: F64, start: float, end: float) -> bool:
+    """Whether a lane is straight and no other lies on it between two arc lengths, as parking rows do."""
+    if type(lane) is not StraightLane or not len(others):
+        return type(lane) is StraightLane
+    along, aside = (others - lane.start) @ lane.direction, (others - lane.start) @ lane.direction_lateral
+    return not ((along > start) & (along < end) & (np.abs(aside) < NEAR)).any()
+
+
 def extend(network: RoadNetwork) -> dict[Key, Lane]:
     """Lengthen the straight lanes at which roads end, in place, and list all lanes in the world."""
     lanes = network.lanes_dict()
     joints = [(a, b) for a in lanes for b in lanes if a != b and goes_on(lanes[a], lanes[b])]
     led_to, leading = {b for _, b in joints}, {a for a, _ in joints}
     listed: dict[Key, tuple[bool, bool, float]] = {}
+    drawn = {key: [lane.position(s, 0) for s in np.arange(0.0, lane.length)] for key, lane in lanes.items()}
     for key, lane in lanes.items():
         entry, leaving = key not in led_to, key not in leading
-        more = EXTEND if type(lane) is StraightLane else 0.0
-        listed[key] = entry, leaving, more * leaving
-        if more and (entry or leaving):
-            a = lane.position(-more * entry, 0)
-            b = lane.position(lane.length + more * leaving, 0)
+        others = np.array([p for other in drawn if other != key for p in drawn[other]])
+        before = EXTEND * (entry and _open(lane, others, -EXTEND, -2 * NEAR))
+        after = EXTEND * (leaving and _open(lane, others, lane.length + 2 * NEAR, lane.length + EXTEND))
+        listed[key] = entry, leaving, after
+        if before or after:
+            a = lane.position(-before, 0)
+            b = lane.position(lane.length + after, 0)
             lane.__init__(a, b, lane.width, lane.line_types, lane.forbidden, lane.speed_limit, lane.priority)
     lines = {}
     for key, lane in lanes.items():
@@ -271,9 +282,18 @@ class Highway:
         ego = self.env.vehicle
         return self.env.road.network, ego.position.copy(), float(ego.heading)
 
+    def _goal(self) -> str | None:
+        """The node that the environment's config sends the ego to, or that it planned for it, if any."""
+        if self.env is None:
+            return None
+        plan = getattr(self.env.vehicle, "route", None)
+        return self.env.config.get("destination") or (plan[-1][1] if plan else None)
+
     def _route(self) -> list[Key]:
-        """The ego's lanes to the destination that the environment's config names, if any."""
-        first, network = self.first, self.road.network
-        goal = self.env.config.get("destination") if self.env is not None else None
-        nodes = network.shortest_path(first[1], goal) if goal else []
-        return [first, *((a, b, min(first[2], len(network.graph[a][b]) - 1)) for a, b in pairwise(nodes))]
+        """The ego's lanes to its goal, one that joins the other."""
+        keys, goal = [self.first], self._goal()
+        nodes = self.road.network.shortest_path(self.first[1], goal) if goal else []
+        for a, b in pairwise(nodes):
+            joined = [lane.key for lane in onward(self.lanes, self.lanes[keys[-1]]) if lane.key[:2] == (a, b)]
+            keys.append(joined[0] if joined else (a, b, 0))
+        return keys

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from scenarios.spec import Scenario
+from sim.scene.course import onward
 from sim.scene.flow import Traffic
 from sim.scene.motion import Poses
 from sim.scene.traffic import EXTEND
@@ -74,6 +75,36 @@ def test_the_arms_of_a_roundabout_lead_into_its_ring(name: str) -> None:
     assert len(set(made.ego.course.keys[2]) & ring) == 2
     for key, lane in made._highway.lanes.items():
         assert not (lane.leaving and key[1] in ring), key
+
+
+@pytest.mark.parametrize("name", [name for name in IDS if "roundabout" in name])
+def test_the_ego_goes_half_round_and_leaves_on_the_road(name: str) -> None:
+    made = Traffic(scenario(name), np.random.SeedSequence(1))
+    lanes = np.concatenate([lane.line for lane in made._highway.lanes.values()])
+    way, off = [], []
+    for _ in range(600):
+        made.step(0.05)
+        way.append(made.ego_state().xy)
+        off.append(np.hypot(*(lanes - way[-1]).T).min())
+    assert made.ego.course.keys[-1] == ("nxs", "nxr", 0)
+    angle = np.unwrap(np.arctan2(*np.array(way).T[::-1]))
+    assert np.rad2deg(angle.max() - angle.min()) > 150
+    assert max(off) < 2.0
+    assert way[-1][1] > 40
+
+
+@pytest.mark.parametrize("name", [name for name in IDS if "exit" in name])
+def test_only_the_lane_beside_it_leads_to_an_exit(name: str) -> None:
+    lanes = Traffic(scenario(name), np.random.SeedSequence(1))._highway.lanes
+    leads = [lane.key for lane in lanes.values() if any(b.key[1] == "exit" for b in onward(lanes, lane))]
+    assert leads == [max(key for key in lanes if key[:2] == ("1", "2"))]
+
+
+def test_facing_rows_of_parking_do_not_run_into_each_other() -> None:
+    lanes = Traffic(scenario("parking-v0"), np.random.SeedSequence(1))._highway.lanes
+    rows = [np.concatenate([b.line for k, b in lanes.items() if k[0] == node]) for node in ("a", "b")]
+    apart = np.hypot(*(rows[0][:, None] - rows[1]).transpose(2, 0, 1))
+    assert apart.min() > 10
 
 
 def test_only_straight_lanes_are_carried_on() -> None:
