@@ -66,7 +66,7 @@ class GroundConfig(BaseModel):
     learn_first: int = Field(20, ge=1, le=500, description="steps of L-BFGS in the first frame")
     learn_next: int = Field(4, ge=1, le=500, description="steps of L-BFGS in a frame that follows")
     drift: float = Field(0.002, ge=0, description="least std gained per metre from what was seen [m/m]")
-    most_std: float = Field(1.0, gt=0, description="largest std from that [m]")
+    most_std: float = Field(3.0, gt=0, description="largest std from that [m]")
 
     seed_height: float = Field(0.3, gt=0, description="T_s, seeds lie this near the expected ground [m]")
     seed_radius: float = Field(50.0, gt=0, description="seeds lie within this range [m]")
@@ -74,9 +74,10 @@ class GroundConfig(BaseModel):
     join_distance: float = Field(3.0, gt=0, description="ζ_d, most standardised distance to join")
     refit: bool = Field(True, description="fit again on all ground points of each cell")
 
-    point_height: float = Field(0.12, gt=0, description="ζ_r at the sensor [m]")
+    point_height: float = Field(0.25, gt=0, description="ζ_r at the sensor [m]")
     point_range: float = Field(0.001, ge=0, description="growth of ζ_r with range [m/m]")
     point_slope: float = Field(0.1, ge=0, description="growth of ζ_r with the local residual slope [m]")
-    point_most: float = Field(0.35, gt=0, description="largest ζ_r [m]")
+    point_most: float = Field(0.4, gt=0, description="largest ζ_r [m]")
     point_below: float = Field(3.0, ge=1, description="below the ground ζ_r is this much larger")
-    foot_factor: float = Field(0.35, gt=0, le=1, description="share of ζ_r kept near feet of obstacles")
+    point_noise: float = Field(2.0, ge=0, description="least ζ_r in stds of an observation")
+    foot_factor: float = Field(0.22, gt=0, le=1, description="share of ζ_r kept near feet of obstacles")

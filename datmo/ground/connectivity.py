@@ -22,12 +22,17 @@ def _root(parent: I32, i: int) -> int:
 
 
 @numba.njit(cache=True, nogil=True)
-def _link(parent: I32, a: int, b: int, d: float, de: float, dz: float) -> None:
-    """Join the sets of cells a, b if the steps de, dz over the distance d are such as ground takes."""
+def _steps(d: float, de: float, dz: float) -> bool:
+    """Whether ground takes the steps de, dz over the distance d [m]."""
     most = STEP + STEP_SLOPE * d
-    if abs(dz) <= most and abs(de) <= min(most, STEP_MOST):
-        a, b = _root(parent, a), _root(parent, b)
-        parent[max(a, b)] = min(a, b)
+    return bool(abs(dz) <= most and abs(de) <= min(most, STEP_MOST))
+
+
+@numba.njit(cache=True, nogil=True)
+def _join(parent: I32, a: int, b: int) -> None:
+    """Make the sets of cells a and b one."""
+    a, b = _root(parent, a), _root(parent, b)
+    parent[max(a, b)] = min(a, b)
 
 
 @numba.njit(cache=True, nogil=True)
@@ -45,25 +50,20 @@ def components(r: F64, e: F64, z: F64, low: Bool) -> I32:
     parent = np.arange(M * N).astype(np.int32)
     width = 2 * np.pi / M
     for m in range(M):
-        last = -1
+        last, o = -1, m + 1 if m + 1 < M else 0
         for b in range(N):
             if not low[m, b]:
                 continue
-            if last >= 0 and r[m, b] - r[m, last] <= REACH + REACH_SLOPE * r[m, b]:
-                _link(
-                    parent,
-                    m * N + last,
-                    m * N + b,
-                    r[m, b] - r[m, last],
-                    e[m, b] - e[m, last],
-                    z[m, b] - z[m, last],
-                )
+            rb, eb, zb = r[m, b], e[m, b], z[m, b]
+            near = last >= 0 and rb - r[m, last] <= REACH + REACH_SLOPE * rb
+            if near and _steps(rb - r[m, last], eb - e[m, last], zb - z[m, last]):
+                _join(parent, m * N + last, m * N + b)
             last = b
-            o = (m + 1) % M
             for c in range(max(b - SIDE, 0), min(b + SIDE + 1, N)):
                 if low[o, c]:
-                    d = np.hypot(r[m, b] - r[o, c], width * r[m, b])
-                    _link(parent, m * N + b, o * N + c, d, e[m, b] - e[o, c], z[m, b] - z[o, c])
+                    d = np.sqrt((rb - r[o, c]) ** 2 + (width * rb) ** 2)
+                    if _steps(d, eb - e[o, c], zb - z[o, c]):
+                        _join(parent, m * N + b, o * N + c)
     label = np.full((M, N), -1, np.int32)
     for i in range(M * N):
         if low.flat[i]:
@@ -71,6 +71,7 @@ def components(r: F64, e: F64, z: F64, low: Bool) -> I32:
     return label
 
 
+@numba.njit(cache=True, nogil=True)
 def connected(r: F64, label: I32, area: F64) -> Bool:
     """Cells (M, N) of the ground's components: those of more than a car's area that reach within 20 m
     of the sensor, or without any the largest one.
@@ -78,19 +79,31 @@ def connected(r: F64, label: I32, area: F64) -> Bool:
     Args:
         r: (M, N) [m]. label: (M, N) of `components`. area: (N,) of a cell in each bin [m²].
     """
-    low = label >= 0
-    names, at = np.unique(label[low], return_inverse=True)
-    size = np.bincount(at, np.broadcast_to(area, label.shape)[low], len(names))
-    nearest = np.full(len(names), np.inf)
-    np.minimum.at(nearest, at, r[low])
+    M, N = label.shape
+    size, nearest = np.zeros(M * N), np.full(M * N, np.inf)
+    for m in range(M):
+        for b in range(N):
+            k = label[m, b]
+            if k >= 0:
+                size[k] += area[b]
+                nearest[k] = min(nearest[k], r[m, b])
     ground = (nearest < NEAR) & (size >= LARGE_AREA)
-    if len(names) and not ground.any():
+    if not ground.any():
         ground[np.argmax(size)] = True
-    kept = np.zeros(label.shape, bool)
-    kept[low] = ground[at]
-    return kept
+    return _cells_of(label, ground)
 
 
+@numba.njit(cache=True, nogil=True)
+def _cells_of(label: I32, chosen: Bool) -> Bool:
+    """Cells (M, N) of the components `chosen` (M * N,) by their number."""
+    out = np.zeros(label.shape, np.bool_)
+    for m in range(label.shape[0]):
+        for b in range(label.shape[1]):
+            out[m, b] = label[m, b] >= 0 and chosen[label[m, b]]
+    return out
+
+
+@numba.njit(cache=True, nogil=True)
 def readmitted(label: I32, kept: Bool, e: F64, area: F64) -> Bool:
     """Cells (M, N) of components left out that are ground after all: most of their cells lie on the
     surface drawn without them, or they are larger than a car.
@@ -99,12 +112,14 @@ def readmitted(label: I32, kept: Bool, e: F64, area: F64) -> Bool:
         label: (M, N). kept: (M, N) of `connected`. e: (M, N) height over the surface drawn without
         the others [m]. area: (N,) of a cell in each bin [m²].
     """
-    out = (label >= 0) & ~kept
-    names, at = np.unique(label[out], return_inverse=True)
-    count = np.bincount(at, minlength=len(names))
-    extent = np.bincount(at, np.broadcast_to(area, label.shape)[out], len(names))
-    on = np.bincount(at, np.abs(e[out]) < STEP, len(names))
+    M, N = label.shape
+    count, on, extent = np.zeros(M * N, np.int64), np.zeros(M * N, np.int64), np.zeros(M * N)
+    for m in range(M):
+        for b in range(N):
+            k = label[m, b]
+            if k >= 0 and not kept[m, b]:
+                count[k] += 1
+                extent[k] += area[b]
+                on[k] += abs(e[m, b]) < STEP
     back = (2 * on > count) | ((extent >= LARGE_AREA) & (2 * count >= LARGE_CELLS))
-    cells = np.zeros(label.shape, bool)
-    cells[out] = back[at]
-    return cells
+    return _cells_of(label, back)

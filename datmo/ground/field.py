@@ -25,6 +25,7 @@ WINDOW_LINES, WINDOW_BINS = 3, 3
 PRIOR_CELLS = 4.0
 LARGEST_STEP = 0.3
 TINY = 1e-9
+FRONTS, TOGETHER = 4, 8  # lines
 PULL = 0.04  # how far a cell's mean may be off, as a share of c times the cell's size
 # Std of the height at the middle of a cell over sqrt(c size), and of one between seen cells over
 # sqrt(c / Σ 1/d), by range [m]: fitted to the true heights of simulated ground of classes A to G. They grow
@@ -51,42 +52,96 @@ def links(c: F64, r: F64) -> tuple[F64, F64]:
 
 
 @numba.njit(cache=True, nogil=True)
-def relax(f: F64, w: F64, y: F64, out: F64, across: F64, ridge: float) -> None:
-    """One turn of all lines: each solved (Thomas) with its neighbours held; f (M, N) in place.
+def factor(w: F64, out: F64, across: F64, ridge: float) -> tuple[F64, F64]:
+    """Of every line with its neighbours held: 1 / pivots, and the share of the next node in each, (M, N).
 
     Args:
-        w: (M, N) precision of each observation, 0 without one. y: (M, N) observed. out, across: of `links`.
-        ridge: precision of a node about 0.
+        w: (M, N) precision of each observation, 0 without one. out, across: of `links`. ridge: precision
+        of a node about 0.
+    """
+    M, N = w.shape
+    inverse, upper = np.empty((M, N)), np.zeros((M, N))
+    for start in range(0, M, TOGETHER):  # several lines together: each waits for its own divisions only
+        for b in range(N):
+            for m in range(start, min(start + TOGETHER, M)):
+                diagonal = w[m, b] + ridge + across[m, b] + across[m - 1, b]
+                if b > 0:
+                    diagonal += out[m, b - 1] * (1 - upper[m, b - 1])
+                if b + 1 < N:
+                    diagonal += out[m, b]
+                inverse[m, b] = 1 / diagonal
+                if b + 1 < N:
+                    upper[m, b] = out[m, b] * inverse[m, b]
+    return inverse, upper
+
+
+@numba.njit(cache=True, nogil=True)
+def relax(f: F64, pull: F64, inverse: F64, upper: F64, out: F64, across: F64) -> None:
+    """One turn of all lines: each solved (Thomas) with its neighbours held; f (M, N) in place.
+
+    `FRONTS` lines far from each other are solved together, which hides the wait of each for itself.
+
+    Args:
+        pull: (M, N) precision x observed height. inverse, upper: of `factor`. out, across: of `links`.
     """
     M, N = f.shape
-    upper = np.empty(N)
-    for m in range(M):
-        p, q = m - 1 if m > 0 else M - 1, m + 1 if m + 1 < M else 0
-        before = 0.0
-        for b in range(N):
-            diagonal = w[m, b] + ridge + across[m, b] + across[p, b]
-            right = w[m, b] * y[m, b] + across[m, b] * f[q, b] + across[p, b] * f[p, b]
-            if b > 0:
-                diagonal += out[m, b - 1] * (1 + before)
-                right += out[m, b - 1] * f[m, b - 1]
-            if b + 1 < N:
-                diagonal += out[m, b]
-                before = -out[m, b] / diagonal
-                upper[b] = before
-            f[m, b] = right / diagonal
+    fronts = FRONTS if M >= 3 * FRONTS else 1
+    step = M // fronts
+    x = np.zeros((N, FRONTS))
+    for j in range(step + M % fronts):
+        lines = fronts if j < step else 1
+        first = j if j < step else M - M % fronts + j - step
+        for k in range(lines):
+            m = first + k * step
+            after = m + 1 if m + 1 < M else 0
+            for b in range(N):
+                right = pull[m, b] + across[m, b] * f[after, b] + across[m - 1, b] * f[m - 1, b]
+                x[b, k] = right * inverse[m, b]
+        for b in range(1, N):
+            for k in range(lines):
+                m = first + k * step
+                x[b, k] += out[m, b - 1] * inverse[m, b] * x[b - 1, k]
         for b in range(N - 2, -1, -1):
-            f[m, b] -= upper[b] * f[m, b + 1]
+            for k in range(lines):
+                x[b, k] += upper[first + k * step, b] * x[b + 1, k]
+        for k in range(lines):
+            f[first + k * step] = x[:, k]
+
+
+@numba.njit(cache=True, nogil=True)
+def settle(f: F64, w: F64, y: F64, out: F64, across: F64, ridge: float, turns: int) -> None:
+    """`turns` of `relax` towards heights y (M, N) of precision w; f (M, N) in place."""
+    inverse, upper = factor(w, out, across, ridge)
+    pull = w * y
+    for _ in range(turns):
+        relax(f, pull, inverse, upper, out, across)
+
+
+@numba.njit(cache=True, nogil=True)
+def robust(y: F64, use: Bool, noise: F64, out: F64, across: F64, ridge: float) -> F64:
+    """The field (M, N) through `y` where `use`, in rounds: weights fall with the distance above the field,
+    and less with that below."""
+    f, w = np.zeros(y.shape), np.zeros(y.shape)
+    for scale in GROWTH_SCALES:
+        for m in range(len(y)):
+            for b in range(y.shape[1]):
+                e = (y[m, b] - f[m, b]) / scale
+                u = e if e > 0 else e / BELOW
+                fall = 1 + u * u
+                w[m, b] = 1 / (noise[m, b] * fall * fall) if use[m, b] else 0.0
+        settle(f, w, y, out, across, ridge, TURNS)
+    return f
 
 
 @numba.njit(cache=True, nogil=True)
 def roughness(y: F64, use: Bool, noise: F64, r: F64, start: float) -> tuple[F64, float]:
-    """c (M, N) around each cell, and of the frame [m]: Σ (Δy² - noise) / Σ d over pairs of neighbouring cells.
+    """c (M, N) around each cell, and of the frame [m]: Σ (Δy² - noise) / Σ d over neighbouring cells.
 
     Pairs are a cell and the next used one outwards or in the next line; a local window shares with the frame
     as if that were a few more pairs.
 
     Args:
-        y: (M, N) height of each cell [m]. noise: (M, N) variance of its error [m²]. start: c without any pair.
+        y: (M, N) height of each cell [m]. noise: (M, N) variance of its error [m²]. start: c without pairs.
     """
     M, N = y.shape
     square, span = np.zeros((M, N)), np.zeros((M, N))
@@ -113,7 +168,7 @@ def roughness(y: F64, use: Bool, noise: F64, r: F64, start: float) -> tuple[F64,
 
 @numba.njit(cache=True, nogil=True)
 def _window(square: F64, span: F64, frame: float) -> F64:
-    """Sums over a window about each cell, wrapped around, with the frame's value as `PRIOR_CELLS` more cells."""
+    """c by sums over a window about each cell; the frame weighs as `PRIOR_CELLS` more cells."""
     M, N = square.shape
     s, d = np.zeros((M, N)), np.zeros((M, N))
     for m in range(M):
@@ -151,15 +206,15 @@ def conductance(use: Bool, r: F64) -> F64:
                     g[m, b] += 1 / abs(r[b] - r[last])
                 if use[m, b]:
                     last = b
-    for b in range(N):
-        for step in (1, -1):
-            last = -10 * M
-            for k in range(2 * M):
-                m = (k if step > 0 else 2 * M - 1 - k) % M
-                if k >= M and last > -M and k > last:
-                    g[m, b] += 1 / ((k - last) * width * r[b])
+    for step in (1, -1):
+        latest = np.full(N, -10 * M)
+        for k in range(2 * M):
+            m = (k if step > 0 else 2 * M - 1 - k) % M
+            for b in range(N):
+                if k >= M and latest[b] > -M:
+                    g[m, b] += 1 / ((k - latest[b]) * width * r[b])
                 if use[m, b]:
-                    last = k
+                    latest[b] = k
     return g
 
 
@@ -192,21 +247,22 @@ class Field(Regression):
         none = np.zeros(0, np.int32)
         return Learned({"c": 1e-3}, none, none, none)
 
-    def grow(self, cells: Cells, seed: Bool, doubtful: Bool, learned: Learned) -> tuple[Bool, Heights]:
+    def grow(
+        self,
+        cells: Cells,
+        seed: Bool,  # noqa: ARG002 - the rounds find their own way from the sheet
+        doubtful: Bool,
+        learned: Learned,
+    ) -> tuple[Bool, Heights]:
         """Robust rounds: weights fall with the distance above the field, and less with that below."""
         c = np.full(cells.y.shape, learned.hyper["c"])
         out, across = links(c, self._r)
-        f = np.zeros(cells.y.shape)
         noise = np.where(doubtful, DOUBT, 1.0) * (self.config.noise_std**2 + c * self._size)
         y = np.where(cells.use, cells.y, 0.0)
-        for scale in GROWTH_SCALES:
-            e = y - f
-            u = np.where(e > 0, e, e / BELOW) / scale
-            w = np.where(cells.use, 1 / (noise * (1 + u * u) ** 2), 0.0)
-            for _ in range(TURNS):
-                relax(f, w, y, out, across, self._ridge)
+        f = robust(y, cells.use, noise, out, across, self._ridge)
         member = cells.use & (np.abs(y - f) < self.config.seed_height) & ~doubtful
-        return member, self._heights(f, c * self._size, noise)
+        observed = self.config.noise_floor**2 + c * self._size
+        return member, self._heights(f, c * self._size, observed)
 
     def fit(self, cells: Cells, learned: Learned) -> tuple[Heights, Learned]:
         """The field through the cells' means, its roughness learned around each."""
@@ -216,21 +272,17 @@ class Field(Regression):
         out, across = links(c, self._r)
         w = np.where(cells.use, 1 / (noise + PULL * c * self._size), 0.0)
         f = y.copy()
-        self._settle(f, w, y, out, across)
+        settle(f, w, y, out, across, self._ridge, TURNS)
         if cells.azimuth is not None:
             to_middle(f, y, cells.use, cells.r, cells.azimuth, self._r)
-        self._settle(f, w, y, out, across)
+        settle(f, w, y, out, across, self._ridge, TURNS)
         seen = noise + self._seen_share * c * self._size
         between = self._between_share * c / np.maximum(conductance(cells.use, self._r), TINY)
         var = np.minimum(np.where(cells.use, seen, between), self.config.most_std**2)
         count, none = cells.use.sum(1).astype(np.int32), np.zeros(len(y), np.int32)
-        return self._heights(f, var, noise), Learned(
+        return self._heights(f, var, noise + c * self._size), Learned(
             {"c": frame}, count, none, none, frames=learned.frames + 1
         )
-
-    def _settle(self, f: F64, w: F64, y: F64, out: F64, across: F64) -> None:
-        for _ in range(TURNS):
-            relax(f, w, y, out, across, self._ridge)
 
     def _heights(self, f: F64, var: F64, noise: F64) -> Heights:
         """On the nodes: the first and last bin hold beyond."""

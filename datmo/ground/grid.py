@@ -181,7 +181,7 @@ def _lowest(
 
 
 @numba.njit(cache=True, nogil=True)
-def _merge(points: F32, rows: I32, heights: F32, multipath: float) -> tuple[I32, F32]:
+def _merge(points: F32, rows: I32, heights: F32, multipath: float) -> tuple[I32, F64]:
     """The candidate (cells,) of blocks, -1 where empty, and the height of the highest point above it [m].
 
     It is the second lowest where that lies more than `multipath` higher: a return from below the ground
@@ -194,6 +194,12 @@ def _merge(points: F32, rows: I32, heights: F32, multipath: float) -> tuple[I32,
     low, after, high = heights[0]
     for k in range(1, len(rows)):
         for c in range(len(first)):
+            if rows[k, 0, c] < 0:
+                continue
+            if first[c] < 0:
+                first[c], second[c] = rows[k, :, c]
+                low[c], after[c], high[c] = heights[k, :, c]
+                continue
             high[c] = max(high[c], heights[k, 2, c])
             for j in range(2):
                 if rows[k, j, c] >= 0 and heights[k, j, c] <= after[c]:
@@ -202,7 +208,18 @@ def _merge(points: F32, rows: I32, heights: F32, multipath: float) -> tuple[I32,
         if second[c] >= 0 and after[c] - low[c] > multipath:
             first[c], low[c] = second[c], after[c]
         high[c] = high[c] - low[c] if first[c] >= 0 else 0.0
-    return first, high
+    return first, high.astype(np.float64)
+
+
+@numba.njit(cache=True, nogil=True)
+def _place(points: F32, azimuth: F64, radius: F64, index: I32, columns: F64) -> None:
+    """x, y, z, azimuth and range of the points `index`, written to `columns` (5, cells)."""
+    x, y, z, turn, r = columns
+    for c in range(len(index)):
+        i = index[c]
+        if i >= 0:
+            x[c], y[c], z[c] = points[i]
+            turn[c], r[c] = azimuth[i], radius[i]
 
 
 @dataclass(frozen=True)
@@ -249,11 +266,7 @@ class Located:
         heights = np.empty((len(edges), 3, M * N), np.float32)
         each(lambda k: _lowest(self.points, self.cell, *edges[k], *rows[k], *heights[k]), range(len(edges)))
         index, extent = _merge(self.points, rows, heights, multipath)
-        at = np.flatnonzero(index >= 0)
-        chosen = index[at]
-        middle = self.grid.middle
-        x, y, z, azimuth, r = (np.array(column) for column in middle)
-        x[at], y[at], z[at] = self.points[chosen].T
-        azimuth[at], r[at] = self.azimuth[chosen], self.radius[chosen]
-        out = (column.reshape(M, N) for column in (index >= 0, x, y, z, azimuth, r, extent.astype(float)))
-        return Candidates(*out)
+        columns = np.array(self.grid.middle)
+        _place(self.points, self.azimuth, self.radius, index, columns)
+        x, y, z, azimuth, r = columns.reshape(5, M, N)
+        return Candidates((index >= 0).reshape(M, N), x, y, z, azimuth, r, extent.reshape(M, N))

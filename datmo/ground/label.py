@@ -12,12 +12,14 @@ from datmo.ground.grid import Located
 
 FOOT_LOW, FOOT_HIGH, FOOT_CELLS = 0.3, 2.5, 2
 UNITS = 1e6
+POINTS = 4.0  # of a cell, as its mean's noise reckons: the true number would make copies matter
 
 
 @dataclass(frozen=True)
 class LimitRules:
     """ζ_r at the sensor [m], its growth with range [m/m] and slope [m], its most [m], how much
-    larger it is below the ground, and the share kept near feet of obstacles."""
+    larger it is below the ground, the share kept near feet of obstacles, and its least in stds of
+    an observation."""
 
     start: float
     by_range: float
@@ -25,6 +27,7 @@ class LimitRules:
     most: float
     below: float
     foot: float
+    by_noise: float
 
 
 @numba.njit(cache=True, nogil=True)
@@ -35,28 +38,28 @@ def foot_cells(e: F64, cell: I32, M: int, N: int) -> Bool:
     Args:
         e: (n,) height of each point over the surface [m]. cell: (n,).
     """
-    has = np.zeros((M, N), np.bool_)
+    held = np.zeros(M * N, np.bool_)
     for i in range(len(e)):
-        if cell[i] >= 0 and FOOT_LOW < e[i] < FOOT_HIGH:
-            has.flat[cell[i]] = True
-    foot = np.zeros((M, N), np.bool_)
+        if FOOT_LOW < e[i] < FOOT_HIGH and cell[i] >= 0:
+            held[cell[i]] = True
+    has = held.reshape(M, N)
+    foot, count = np.zeros((M, N), np.bool_), np.zeros(N + 2, np.int64)
     for m in range(M):
+        before, after = has[m - 1 if m > 0 else M - 1], has[m + 1 if m + 1 < M else 0]
         for b in range(N):
-            count = 0
-            for o in range(m - 1, m + 2):
-                for c in range(max(b - 1, 0), min(b + 2, N)):
-                    count += has[o % M, c]
-            foot[m, b] = count >= FOOT_CELLS
+            count[b + 1] = before[b] + has[m, b] + after[b]
+        for b in range(N):
+            foot[m, b] = count[b] + count[b + 1] + count[b + 2] >= FOOT_CELLS
     return foot
 
 
 @numba.njit(cache=True, nogil=True)
-def near_surface(e: F64, cell: I32, above: F64, below: F64) -> Bool:
-    """Ground (n,) where -below <= e <= above, both (M * N,) of the point's cell [m]."""
+def near_surface(e: F64, cell: I32, band: F64) -> Bool:
+    """Ground (n,) where e is within the lowest and highest of the point's cell, band (M * N, 2) [m]."""
     out = np.zeros(len(e), np.bool_)
     for i in range(len(e)):
-        if cell[i] >= 0:
-            out[i] = -below[cell[i]] <= e[i] <= above[cell[i]]
+        c = cell[i]
+        out[i] = c >= 0 and band[c, 0] <= e[i] <= band[c, 1]
     return out
 
 
@@ -78,20 +81,20 @@ class CellMeans:
 
 @numba.njit(cache=True, nogil=True)
 def _cell_sums(e: F64, azimuth: F64, radius: F64, cell: I32, ground: Bool, cells: int) -> I64:
-    """(5, cells): number, Σ height, Σ height², Σ range and Σ azimuth of each cell's ground points.
+    """(cells, 5): number, Σ height, Σ height², Σ range and Σ azimuth of each cell's ground points.
 
     In whole micrometres (square millimetres; millionths of a segment): exact, so no order of the
     points decides.
     """
-    out = np.zeros((5, cells), np.int64)
+    out = np.zeros((cells, 5), np.int64)
     for i in range(len(e)):
-        c = cell[i]
-        if c >= 0 and ground[i]:
-            out[0, c] += 1
-            out[1, c] += np.int64(np.rint(e[i] * UNITS))
-            out[2, c] += np.int64(np.rint(e[i] * e[i] * UNITS))
-            out[3, c] += np.int64(np.rint(radius[i] * UNITS))
-            out[4, c] += np.int64(np.rint((azimuth[i] - np.floor(azimuth[i])) * UNITS))
+        if ground[i]:
+            at = out[cell[i]]
+            at[0] += 1
+            at[1] += np.int64(np.rint(e[i] * UNITS))
+            at[2] += np.int64(np.rint(e[i] * e[i] * UNITS))
+            at[3] += np.int64(np.rint(radius[i] * UNITS))
+            at[4] += np.int64(np.rint((azimuth[i] - int(azimuth[i])) * UNITS))
     return out
 
 
@@ -103,46 +106,79 @@ def cell_means(located: Located, e: F64, ground: Bool, least_noise: float) -> Ce
     """
     grid = located.grid
     M, N = grid.shape
-    sums = _cell_sums(e, located.azimuth, located.radius, located.cell, ground, M * N).reshape(5, M, N)
-    n = sums[0]
-    over, square, r, azimuth = sums[1:] / (UNITS * np.maximum(n, 1))
-    # Scatter within cells of one bin: each cell has few points, a ring of cells has many.
-    spread = (np.maximum(square - over**2, 0) * n).sum(0) / np.maximum((n - 1).clip(0).sum(0), 1)
-    middle = np.arange(M)[:, None] + np.where(n > 0, azimuth, 0.5)
-    noise = np.broadcast_to(spread, (M, N)) / np.maximum(n, 1) + least_noise
-    return CellMeans(n > 0, over, np.where(n > 0, r, grid.centers), middle, noise)
+    arrays = (e, located.azimuth, located.radius, located.cell, ground)
+    means = _means(_cell_sums(*arrays, M * N).reshape(M, N, 5), grid.centers, least_noise)
+    return CellMeans(means[0] > 0, *means[1:])
 
 
 @numba.njit(cache=True, nogil=True)
-def _limits(mean: F64, nodes: F64, start: float, by_range: float, by_slope: float, most: float) -> F64:
+def _means(sums: I64, centers: F64, least_noise: float) -> F64:
+    """(5, M, N): number, and the columns of `CellMeans`, from `_cell_sums` (M, N, 5)."""
+    M, N, _ = sums.shape
+    out, scatter, free = np.zeros((5, M, N)), np.zeros(N), np.zeros(N)
+    number, over, r, azimuth, noise = out
+    for m in range(M):
+        for b in range(N):
+            n, r[m, b], azimuth[m, b] = sums[m, b, 0], centers[b], m + 0.5
+            if n > 0:
+                number[m, b], share = n, 1 / (UNITS * n)
+                over[m, b], r[m, b] = sums[m, b, 1] * share, sums[m, b, 3] * share
+                azimuth[m, b] = m + sums[m, b, 4] * share
+                # Scatter within cells of one bin: each cell has few points, a ring of cells has many.
+                scatter[b] += max(sums[m, b, 2] * share - over[m, b] ** 2, 0.0) * n
+                free[b] += n
+    for m in range(M):
+        for b in range(N):
+            noise[m, b] = scatter[b] / max(free[b], 1.0) / POINTS + least_noise
+    return out
+
+
+@numba.njit(cache=True, nogil=True)
+def _limits(
+    mean: F64,
+    noise: F64,
+    nodes: F64,
+    start: float,
+    by_range: float,
+    by_slope: float,
+    most: float,
+    by_noise: float,
+) -> tuple[F64, F64]:
     M, N = len(mean), len(nodes) - 2
-    out, width = np.empty((M, N)), 4 * np.pi / M
+    out, rough, width = np.empty((M, N)), np.empty((M, N)), 4 * np.pi / M
     for m in range(M):
         before, after = mean[m - 1 if m > 0 else M - 1], mean[m + 1 if m + 1 < M else 0]
         for b in range(N):
             along = (mean[m, b + 2] - mean[m, b]) / (nodes[b + 2] - nodes[b])
             across = (after[b + 1] - before[b + 1]) / (width * nodes[b + 1])
-            slope = np.hypot(along, across)
+            slope = np.sqrt(along * along + across * across)
             out[m, b] = min(start + by_range * nodes[b + 1] + by_slope * slope, most)
-    return out
+            rough[m, b] = by_noise * np.sqrt(noise[m, b + 1])
+    return out, rough
 
 
-def limits(height: F64, nodes: F64, rules: LimitRules) -> F64:
-    """Threshold ζ_r (M, N) of each cell [m]: at the sensor + with range + with the slope of the
-    surface over its plane, up to the most.
+def limits(height: F64, noise: F64, nodes: F64, rules: LimitRules) -> tuple[F64, F64]:
+    """Thresholds (M, N) of each cell [m]: ζ_r, and what rough ground scatters by itself.
+
+    ζ_r is that at the sensor + with range + with the slope of the surface over its plane, up to the
+    most; the second is a multiple of the std of an observation about the surface (as Z-L-I has it).
 
     Args:
-        height: (M, N + 2) of the surface over its plane at the nodes (N + 2,) [m].
+        height: (M, N + 2) of the surface over its plane at the nodes (N + 2,) [m]. noise: (M, N + 2)
+        variance of an observation about it [m²].
     """
-    return np.asarray(_limits(height, nodes, rules.start, rules.by_range, rules.by_slope, rules.most))
+    numbers = (rules.start, rules.by_range, rules.by_slope, rules.most, rules.by_noise)
+    return _limits(height, noise, nodes, *numbers)
 
 
-def label_points(over: F64, cell: I32, limit: F64, rules: LimitRules) -> Bool:
-    """Which points (n,) are ground: within the limit of their cell, less at feet of obstacles.
+def label_points(over: F64, cell: I32, limit: F64, rough: F64, rules: LimitRules) -> Bool:
+    """Which points (n,) are ground: within the limits of their cell, less at feet of obstacles.
 
     Args:
-        over: (n,) height over the surface [m]. cell: (n,), -1 never ground. limit: (M, N) [m].
+        over: (n,) height over the surface [m]. cell: (n,), -1 never ground. limit, rough: of `limits`.
     """
     foot = foot_cells(over, cell, *limit.shape)
-    near = np.where(foot, rules.foot * limit, limit).ravel()
-    return np.asarray(near_surface(over, cell, near, limit.ravel() * rules.below))
+    above = np.maximum(np.where(foot, rules.foot * limit, limit), rough)
+    band = np.stack([-rules.below * limit, above], -1).reshape(-1, 2)
+    # Too short for handing it to threads to pay.
+    return np.asarray(near_surface(over, cell, band))

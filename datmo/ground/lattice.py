@@ -16,6 +16,7 @@ import numpy as np
 from datmo.arrays import F64, I64
 
 TURN = 2 * np.pi
+FRONTS = 4  # lines that are solved together
 
 
 @dataclass(frozen=True)
@@ -103,9 +104,10 @@ def corners(azimuth: F64, radius: F64, lines: int, segments: int, radii: F64) ->
 @numba.njit(cache=True, nogil=True)
 def evaluate(f: F64, line: I64, s: F64, node: I64, t: F64) -> F64:
     """Height (n,) of the surface f (M, N) at places given by `corners`."""
-    out = np.empty(len(line))
+    out, M = np.empty(len(line)), len(f)
     for i in range(len(line)):
-        a, b, q = line[i], (line[i] + 1) % len(f), node[i]
+        a, q = line[i], node[i]
+        b = a + 1 if a + 1 < M else 0
         low = (1 - t[i]) * f[a, q] + t[i] * f[a, q + 1]
         high = (1 - t[i]) * f[b, q] + t[i] * f[b, q + 1]
         out[i] = (1 - s[i]) * low + s[i] * high
@@ -143,55 +145,76 @@ def gather(w: F64, y: F64, line: I64, s: F64, node: I64, t: F64, out: F64) -> No
 
 
 @numba.njit(cache=True, nogil=True)
-def solve_bands(d: F64, e: F64, g: F64, x: F64) -> None:
-    """Solve the symmetric system of diagonals d, e, g in place of its right-hand side x.
+def factor(normal: F64, bands: F64) -> F64:
+    """L D Lᵀ of every line with its neighbours held: 1 / D, first and second factor below the diagonal,
+    (3, M, N).
 
-    By L D Lᵀ; afterwards d holds D, and e and g the first and second factor below the diagonal.
+    Args:
+        normal: (5, M, N) of `gather`. bands: of `Prior`.
     """
-    n = len(d)
-    for i in range(n):
-        if i + 1 < n:
-            p = e[i] / d[i]
-            d[i + 1] -= p * e[i]
-            x[i + 1] -= p * x[i]
-            if i + 2 < n:
-                e[i + 1] -= p * g[i]
-            e[i] = p
-        if i + 2 < n:
-            p = g[i] / d[i]
-            d[i + 2] -= p * g[i]
-            x[i + 2] -= p * x[i]
-            g[i] = p
-    for i in range(n - 1, -1, -1):
-        x[i] /= d[i]
-        if i + 1 < n:
-            x[i] -= e[i] * x[i + 1]
-        if i + 2 < n:
-            x[i] -= g[i] * x[i + 2]
+    _, M, N = normal.shape
+    out = np.zeros((3, M, N))
+    inverse, e, g = out
+    for b in range(N):  # all lines together: each waits for its own divisions only
+        for m in range(M):
+            d = normal[0, m, b] + bands[0, b]
+            off = normal[1, m, b] + bands[1, b]
+            if b > 0:
+                d -= e[m, b - 1] * e[m, b - 1] / inverse[m, b - 1]
+                off -= e[m, b - 1] * bands[2, b - 1]
+            if b > 1:
+                d -= g[m, b - 2] * bands[2, b - 2]
+            inverse[m, b] = 1 / d
+            e[m, b] = off * inverse[m, b]
+            g[m, b] = bands[2, b] * inverse[m, b]
+    return out
 
 
 @numba.njit(cache=True, nogil=True)
-def relax(f: F64, normal: F64, bands: F64, near: F64, second: F64, first: int, last: int) -> None:
-    """One turn of lines first..last-1, each solved with its neighbours held; f (M, N) in place.
+def _right(f: F64, normal: F64, near: F64, second: F64, m: int, x: F64) -> None:
+    """Right-hand side (N,) of line m with its neighbours held, written to x."""
+    M, N = f.shape
+    p, q = m - 1 if m > 0 else M - 1, m + 1 if m + 1 < M else 0
+    before, after = f[p], f[q]
+    before2, after2 = f[p - 1 if p > 0 else M - 1], f[q + 1 if q + 1 < M else 0]
+    for b in range(N):
+        x[b] = normal[4, m, b] + near[b] * (before[b] + after[b]) + second[b] * (before2[b] + after2[b])
+        x[b] -= normal[2, m, b] * after[b] + normal[2, p, b] * before[b]
+    for b in range(N - 1):
+        x[b] -= normal[3, m, b] * after[b + 1] + normal[3, p, b] * before[b + 1]
+    for b in range(N - 1):
+        x[b + 1] -= normal[3, m, b] * after[b] + normal[3, p, b] * before[b]
+
+
+@numba.njit(cache=True, nogil=True)
+def relax(f: F64, normal: F64, factors: F64, near: F64, second: F64) -> None:
+    """One turn of all lines, each solved with its neighbours held; f (M, N) in place.
+
+    `FRONTS` lines far from each other are solved together, which hides the wait of each for itself.
 
     Args:
-        normal: (5, M, N) of `gather`. bands, near, second: of `Prior`.
+        normal: (5, M, N) of `gather`. factors: of `factor`. near, second: of `Prior`.
     """
     M, N = f.shape
-    d, e, g, x = np.empty(N), np.empty(N), np.empty(N), np.empty(N)
-    for m in range(first, last):
-        p, q = m - 1 if m > 0 else M - 1, m + 1 if m + 1 < M else 0
-        before, after = f[p], f[q]
-        before2, after2 = f[p - 1 if p > 0 else M - 1], f[q + 1 if q + 1 < M else 0]
-        for b in range(N):
-            d[b] = normal[0, m, b] + bands[0, b]
-            e[b] = normal[1, m, b] + bands[1, b]
-            g[b] = bands[2, b]
-            x[b] = normal[4, m, b] + near[b] * (before[b] + after[b]) + second[b] * (before2[b] + after2[b])
-            x[b] -= normal[2, m, b] * after[b] + normal[2, p, b] * before[b]
-        for b in range(N - 1):
-            x[b] -= normal[3, m, b] * after[b + 1] + normal[3, p, b] * before[b + 1]
-            x[b + 1] -= normal[3, m, b] * after[b] + normal[3, p, b] * before[b]
-        solve_bands(d, e, g, x)
-        for b in range(N):
-            f[m, b] = x[b]
+    inverse, e, g = factors
+    fronts = FRONTS if M >= 3 * FRONTS else 1
+    step = M // fronts
+    x = np.zeros((FRONTS, N + 2))
+    for j in range(step + M % fronts):
+        lines = fronts if j < step else 1
+        first = j if j < step else M - M % fronts + j - step
+        for k in range(lines):
+            _right(f, normal, near, second, first + k * step, x[k, :N])
+        for b in range(1, N):
+            for k in range(lines):
+                m = first + k * step
+                x[k, b] -= e[m, b - 1] * x[k, b - 1]
+                if b > 1:
+                    x[k, b] -= g[m, b - 2] * x[k, b - 2]
+        for b in range(N - 1, -1, -1):
+            for k in range(lines):
+                m = first + k * step
+                x[k, b] = x[k, b] * inverse[m, b] - e[m, b] * x[k, b + 1] - g[m, b] * x[k, b + 2]
+        for k in range(lines):
+            f[first + k * step] = x[k, :N]
+            x[k, N:] = 0.0

@@ -15,16 +15,14 @@ RIDGE = 1e-3
 @numba.njit(cache=True, nogil=True)
 def _solve(xyz: F64, w: F64) -> F64:
     """Weighted least-squares plane (3,), its slopes held by a weak ridge and to `STEEPEST`."""
-    A, b = np.zeros((3, 3)), np.zeros(3)
-    A[0, 0] = A[1, 1] = RIDGE
-    A[2, 2] = 1e-9
-    row = np.ones(3)
+    xx, yy, n, xy, sx, sy, xz, yz, sz = RIDGE, RIDGE, 1e-9, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(len(xyz)):
-        row[0], row[1] = xyz[i, 0], xyz[i, 1]
-        for j in range(3):
-            b[j] += w[i] * row[j] * xyz[i, 2]
-            for k in range(3):
-                A[j, k] += w[i] * row[j] * row[k]
+        x, y, z = xyz[i]
+        wx, wy, wz = w[i] * x, w[i] * y, w[i] * z
+        xx, xy, sx, xz = xx + wx * x, xy + wx * y, sx + wx, xz + wx * z
+        yy, sy, yz = yy + wy * y, sy + wy, yz + wy * z
+        n, sz = n + w[i], sz + wz
+    A, b = np.array([[xx, xy, sx], [xy, yy, sy], [sx, sy, n]]), np.array([xz, yz, sz])
     # By cofactors: no BLAS, so the bytes do not depend on its threads.
     inverse = np.empty((3, 3))
     for j in range(3):
@@ -42,16 +40,15 @@ def _solve(xyz: F64, w: F64) -> F64:
 @numba.njit(cache=True, nogil=True)
 def _settle(xyz: F64, plane: F64, quantile_scales: F64, robust_scales: F64) -> F64:
     """Re-weighted least squares from `plane`: for a low quantile, then robustly."""
-    w = np.empty(len(xyz))
+    w, n = np.empty(len(xyz)), len(xyz)
     for phase, scales in enumerate((quantile_scales, robust_scales)):
         for scale in scales:
-            for i in range(len(xyz)):
-                e = xyz[i, 2] - plane[0] * xyz[i, 0] - plane[1] * xyz[i, 1] - plane[2]
-                if phase == 0:
-                    w[i] = (BELOW if e > 0 else 1 - BELOW) / np.hypot(e, scale)
-                else:
-                    u = e / scale if e > 0 else e / (2 * scale)
-                    w[i] = 1 / (1 + u * u) ** 2
+            a, b, c = plane
+            for i in range(n):
+                e = xyz[i, 2] - a * xyz[i, 0] - b * xyz[i, 1] - c
+                low = (BELOW if e > 0 else 1 - BELOW) / np.sqrt(e * e + scale * scale)
+                u = e / scale if e > 0 else e / (2 * scale)
+                w[i] = low if phase == 0 else 1 / ((1 + u * u) * (1 + u * u))
             plane = _solve(xyz, w)
     return plane
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numba
 import numpy as np
 
 from datmo.arrays import F64, Bool
 from datmo.ground import connectivity
 from datmo.ground.config import GroundConfig
 from datmo.ground.grid import Candidates, PolarGrid
-from datmo.ground.lattice import corners, evaluate, prior
+from datmo.ground.lattice import Lattice, corners, evaluate, prior
 from datmo.ground.sheet import Sheet, coarse_lattice, flat_sheet, settle
 
 EXTENT, EXTENT_SLOPE = 0.25, 0.6
@@ -37,17 +38,38 @@ class Expected:
     seed: Bool
 
 
+@numba.njit(cache=True, nogil=True)
 def block_lowest(height: F64, present: Bool, block: int) -> Bool:
     """The lowest candidate (M, N) of each block x block cells; of equals the first."""
     M, N = height.shape
-    rows, columns = -(-M // block), -(-N // block)
-    padded = np.full((rows * block, columns * block), np.inf)
-    padded[:M, :N] = np.where(present, height, np.inf)
-    blocks = padded.reshape(rows, block, columns, block).swapaxes(1, 2).reshape(rows * columns, -1)
-    best = np.zeros_like(blocks, bool)
-    best[np.arange(len(blocks)), blocks.argmin(1)] = True
-    whole = best.reshape(rows, columns, block, block).swapaxes(1, 2).reshape(padded.shape)
-    return np.asarray(whole[:M, :N] & present)
+    out, columns = np.zeros((M, N), np.bool_), -(-N // block)
+    best, at = np.full(columns, np.inf), np.zeros(columns, np.int64)
+    for m in range(M):
+        for b in range(N):
+            if present[m, b] and height[m, b] < best[b // block]:
+                best[b // block], at[b // block] = height[m, b], m * N + b
+        if m % block == block - 1 or m == M - 1:
+            for k in range(columns):
+                if best[k] < np.inf:
+                    out[at[k] // N, at[k] % N] = True
+            best[:] = np.inf
+    return out
+
+
+class _Low:
+    """The candidates of one scan over its plane, and where they stand on the sheet's lattice."""
+
+    def __init__(self, cells: Candidates, plane: F64, grid: PolarGrid, lattice: Lattice) -> None:
+        self.height = cells.above(plane)
+        self._present, self._shape = cells.present, grid.shape
+        azimuth, r = cells.azimuth.ravel(), cells.r.ravel()
+        self.places = corners(azimuth, r, lattice.lines, grid.segments, lattice.radii)
+
+    def over(self, sheet: Sheet) -> F64:
+        """Height (M, N) of the candidates over a sheet [m], 0 where there is none."""
+        return np.where(
+            self._present, self.height - evaluate(sheet.f, *self.places).reshape(self._shape), 0.0
+        )
 
 
 class GroundExpectation:
@@ -62,46 +84,42 @@ class GroundExpectation:
         self._size = np.hypot(np.diff(grid.edges), grid.centers * 2 * np.pi / grid.segments)
 
     def __call__(self, cells: Candidates, plane: F64) -> Expected:
-        """The expected ground of one scan.
-
-        A first sheet goes through the lowest candidates of blocks of cells. Low cells that connect to
-        the ground about the sensor carry the next; components that come to lie on it join for the last.
-
-        Args:
-            plane: (3,) z = a x + b y + c, the local slope.
-        """
-        grid, config, flat = self._grid, self.config, self._flat
-        height = cells.above(plane)
+        """The expected ground of one scan over its local slope, z = a x + b y + c of `plane` (3,)."""
+        config = self.config
         extent = cells.extent - np.hypot(plane[0], plane[1]) * self._size
         steep = cells.present & (extent > self._steep) & config.reject
-        weight = np.where(steep, OBSTACLE_WEIGHT, 1.0).ravel()
-        lattice = flat.lattice
-        places = corners(cells.azimuth.ravel(), cells.r.ravel(), lattice.lines, grid.segments, lattice.radii)
-
-        def draw(use: Bool, start: Sheet, first: bool) -> Sheet:
-            if not config.coarse:
-                return start
-            w = weight * use.ravel()
-            return settle(
-                start, height.ravel(), w, places, self._prior, config.coarse_noise, config.asymmetric, first
-            )
-
-        def over(sheet: Sheet) -> F64:
-            e = height - evaluate(sheet.f, *places).reshape(grid.shape)
-            return np.where(cells.present, e, 0)
-
-        sheet = draw(block_lowest(height, cells.present, BLOCK), flat, True)
-        usable = cells.present
-        if config.connect:
-            e = over(sheet)
-            label = connectivity.components(cells.r, e, height, cells.present & (e < LOW) & ~steep)
-            usable = connectivity.connected(cells.r, label, grid.areas)
-            sheet = draw(usable, sheet, False)
-            e = over(sheet)
-            usable = usable | connectivity.readmitted(label, usable, e, grid.areas)
-            usable |= steep & (np.abs(e) < connectivity.STEP)
-        sheet = draw(usable, sheet, False)
-        e = over(sheet)
+        low = _Low(cells, plane, self._grid, self._flat.lattice)
+        sheet, usable = self._draw(low, cells, steep)
+        e = low.over(sheet)
         doubtful = steep & (e > 0)
         seed = usable & ~doubtful & (np.abs(e) < config.seed_height) & (cells.r < config.seed_radius)
         return Expected(sheet, e, usable, doubtful, seed)
+
+    def _draw(self, low: _Low, cells: Candidates, steep: Bool) -> tuple[Sheet, Bool]:
+        """The sheet, and the candidates (M, N) that carry it.
+
+        A first sheet goes through the lowest candidates of blocks of cells. Low cells that connect to the
+        ground about the sensor carry the next, steep ones left out; components and steep cells that come
+        to lie on it join for the last.
+        """
+        if not self.config.coarse:
+            return self._flat, cells.present
+        weight, areas = np.where(steep, OBSTACLE_WEIGHT, 1.0), self._grid.areas
+        sheet = self._settle(
+            low, np.where(block_lowest(low.height, cells.present, BLOCK), weight, 0.0), self._flat, True
+        )
+        usable = cells.present
+        if self.config.connect:
+            e = low.over(sheet)
+            label = connectivity.components(cells.r, e, low.height, cells.present & (e < LOW) & ~steep)
+            usable = connectivity.connected(cells.r, label, areas)
+            sheet = self._settle(low, np.where(usable, weight, 0.0), sheet, False)
+            e = low.over(sheet)
+            usable = usable | connectivity.readmitted(label, usable, e, areas)
+            usable |= steep & (np.abs(e) < connectivity.STEP)
+        return self._settle(low, np.where(usable, weight, 0.0), sheet, False), usable
+
+    def _settle(self, low: _Low, weight: F64, start: Sheet, first: bool) -> Sheet:
+        noise, asymmetric = self.config.coarse_noise, self.config.asymmetric
+        y, w = low.height.ravel(), weight.ravel()
+        return settle(start, y, w, low.places, self._prior, noise, asymmetric, first)

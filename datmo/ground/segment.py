@@ -12,16 +12,19 @@ from datmo.errors import ConfigError, MessageError, nearest
 from datmo.ground.config import GroundConfig
 from datmo.ground.grid import Candidates, Located, PolarGrid
 from datmo.ground.label import LimitRules, cell_means, label_points, limits
+from datmo.ground.lattice import corners, evaluate
 from datmo.ground.methods import METHODS, regression
 from datmo.ground.plane import robust_plane
 from datmo.ground.regression import Cells, Heights
 from datmo.ground.seeds import GroundExpectation
-from datmo.ground.sheet import Sheet, learned_bend
+from datmo.ground.sheet import Sheet, coarse_lattice, learned_bend
 from datmo.ground.surface import PolarSurface, at_cells, gaps
 from datmo.messages import Ground
 
-DRIFT = 0.7  # what is unseen strays so much less than the sheet bends; fitted as in `field`
+DRIFT = 0.8  # what is unseen strays so much less than the sheet bends; fitted as in `field`
 BEND_RADIUS = 50.0  # [m]
+CURVE = 2.5
+NOTHING = 1e6  # m, farther than any grid reaches
 LEAST_NOISE = 0.001**2  # of a cell's mean: the calibration of rings against each other [m²]
 
 
@@ -32,7 +35,7 @@ def segment_ground(
 
     Args:
         points: (n, 3) [m, sensor frame: x forward, y left, z up].
-        method: a name of `METHODS`; None takes the config's ("z").
+        method: a name of `METHODS`; None takes the config's ("default").
         config: thresholds; None takes the defaults.
         keep: (n,) points that take part (see `datmo.refine`); None takes all.
 
@@ -77,9 +80,17 @@ class GroundSegmenter:
         edges = bin_edges(c.bins, c.blind, c.radius)
         self._grid = PolarGrid(c.segments, edges)
         self._limits = LimitRules(
-            c.point_height, c.point_range, c.point_slope, c.point_most, c.point_below, c.foot_factor
+            c.point_height,
+            c.point_range,
+            c.point_slope,
+            c.point_most,
+            c.point_below,
+            c.foot_factor,
+            c.point_noise,
         )
         self._expect = GroundExpectation(self._grid, c)
+        lattice = coarse_lattice(c.segments, self._grid.centers)
+        self._nodes = corners(*self._grid.node_places, lattice.lines, c.segments, lattice.radii)
         self._regression = regression(self._grid, c)
         self.learned = self._regression.start()
 
@@ -108,21 +119,24 @@ class GroundSegmenter:
         cells = located.candidates(config.multipath)
         plane = self._plane(cells)
         expected = self._expect(cells, plane)
-        level = expected.sheet.at(*grid.node_places, grid.segments).reshape(grid.segments, -1)
+        level = evaluate(expected.sheet.f, *self._nodes).reshape(grid.segments, -1)
         lowest = Cells(cells.r, expected.e, expected.usable, cells.azimuth)
         seen, heights = self._regression.grow(lowest, expected.seed, expected.doubtful, self.learned)
         if config.refit:
             over = PolarSurface(plane, grid.nodes, level + heights.mean, heights.var).below(located)
-            is_ground = self._label(over, located.cell, level + heights.mean)
+            is_ground = self._label(over, located.cell, level, heights)
             seen, heights = self._refit(located, over, is_ground, heights.mean)
         surface = self._surface(plane, expected.sheet, level, seen, heights)
         over, std = surface.below_with_std(located)
-        is_ground = self._label(over, located.cell, surface.mean)
-        return Ground(is_ground, points[:, 2] - over, std, surface)
+        is_ground = self._label(over, located.cell, level, heights)
+        with np.errstate(invalid="ignore"):  # a point at an infinite height has none of its own
+            height = (points[:, 2] - over).astype(np.float32)
+        return Ground(is_ground, height, std, surface)
 
-    def _label(self, over: F64, cell: I32, height: F64) -> Bool:
-        """Which points at `over` the surface (n,) [m] are ground; its height over the plane (M, Q) [m]."""
-        return label_points(over, cell, limits(height, self._grid.nodes, self._limits), self._limits)
+    def _label(self, over: F64, cell: I32, level: F64, heights: Heights) -> Bool:
+        """Which points at `over` the surface (n,) [m] are ground; it lies at level + heights."""
+        both = limits(level + heights.mean, heights.noise, self._grid.nodes, self._limits)
+        return label_points(over, cell, *both, self._limits)
 
     def _plane(self, cells: Candidates) -> F64:
         """The local slope from the lowest points of the cells within `plane_radius`."""
@@ -149,8 +163,10 @@ class GroundSegmenter:
         """The sheet's `level` at the nodes and the regression's heights, joined; the deviation grows away
         from the cells (M, N) that were seen, faster the more the sheet bends."""
         grid, config = self._grid, self.config
-        drift = max(DRIFT * learned_bend(sheet, seen, BEND_RADIUS), config.drift)
-        away = np.minimum(drift * gaps(seen, grid.centers, grid.nodes), config.most_std)
+        turn, curve = learned_bend(sheet, seen, BEND_RADIUS)
+        d = np.minimum(gaps(seen, grid.centers, grid.nodes), NOTHING)
+        away = max(DRIFT * turn, config.drift) * d + CURVE * curve * d**2 / 2
+        away = np.where(d < NOTHING, np.minimum(away, config.most_std), config.most_std)
         mean, std = level + heights.mean, np.sqrt(heights.var + away**2)
         # All segments share the place of their first node, the sensor's foot.
         mean[:, 0], std[:, 0] = mean[:, 0].mean(), std[:, 0].mean()

@@ -12,7 +12,7 @@ import numba
 import numpy as np
 
 from datmo.arrays import F64, I64, Bool
-from datmo.ground.lattice import Lattice, Prior, corners, evaluate, gather, relax
+from datmo.ground.lattice import Lattice, Prior, corners, evaluate, factor, gather, relax
 
 THIRD = 3
 QUANTILE = 0.35
@@ -22,6 +22,7 @@ LATER_SCALES = np.array([2.0, 1.0])
 TURNS, EXTRA = 2, 6
 BELOW = 3.0
 MEDIAN_OF_NORMAL, FEWEST = 0.6745, 10
+FAR_LAG = 3
 
 Places = tuple[I64, F64, I64, F64]
 
@@ -34,13 +35,14 @@ def coarse_lattice(segments: int, centers: F64) -> Lattice:
 
 @numba.njit(cache=True, nogil=True)
 def _quantile_weight(e: float, scale: float, low: float) -> float:
-    return (low if e > 0 else 1 - low) * scale / np.hypot(e, scale)
+    return float((low if e > 0 else 1 - low) * scale / np.sqrt(e * e + scale * scale))
 
 
 @numba.njit(cache=True, nogil=True)
 def _robust_weight(e: float, scale: float, below: float) -> float:
     u = e / (below * scale) if e < 0 else e / scale
-    return 1 / (1 + u * u) ** 2
+    fall = 1 + u * u
+    return 1 / (fall * fall)
 
 
 @numba.njit(cache=True, nogil=True)
@@ -74,8 +76,9 @@ def _settle(
         gather(w, y, line, s, node, t, normal)
         if k == 0 and len(first) == 0:
             f[:] = np.where(normal[0] > 0.0, f, 0.0)  # what bore on these nodes is out
+        factors = factor(normal, bands)
         for _ in range(turns + (extra if k == len(first) + len(later) - 1 else 0)):
-            relax(f, normal, bands, near, second, 0, len(f))
+            relax(f, normal, factors, near, second)
 
 
 @dataclass(frozen=True)
@@ -121,27 +124,36 @@ def settle(
     bands = prior.bands, prior.next, prior.second
     extra = 0 if first else EXTRA
     rows = np.flatnonzero(weight)
-    at = tuple(part[rows] for part in places)
+    line, s, node, t = places
+    at = line[rows], s[rows], node[rows], t[rows]
     _settle(f, y[rows], weight[rows], *at, *bands, quantile, below, *scales, TURNS, extra)
     return Sheet(sheet.lattice, f)
 
 
-def learned_bend(sheet: Sheet, seen: Bool, radius: float) -> float:
-    """τ of the prior as the sheet shows it: the robust std of its second difference over h, by h [m/m].
+def learned_bend(sheet: Sheet, seen: Bool, radius: float) -> tuple[float, float]:
+    """How the sheet bends where it was seen: robust std of its change of slope from node to node [m/m],
+    and of its curvature over far nodes [1/m].
 
-    The height of what is not seen is about that uncertain, times the distance to what is. 0 where
-    fewer than ten places tell.
+    The height at d from what is seen strays about as the first times d plus half the second times d². 0
+    where fewer than ten places tell.
 
     Args:
         seen: (M, N) cells of the grid with ground. radius: places farther than this do not count [m].
     """
-    r, f = sheet.lattice.radii, sheet.f
+    lattice = sheet.lattice
     M, N = seen.shape
-    padded = np.zeros((sheet.lattice.lines * THIRD, len(r) * THIRD), bool)
+    padded = np.zeros((lattice.lines * THIRD, len(lattice.radii) * THIRD), bool)
     padded[:M, :N] = seen
-    nodes = padded.reshape(sheet.lattice.lines, THIRD, len(r), THIRD).any((1, 3))
-    known = nodes[:, 2:] & nodes[:, 1:-1] & nodes[:, :-2] & (r[1:-1] < radius)
-    h = np.diff(r)
-    bends = (np.diff(f, axis=1) / h)[:, 1:] - (np.diff(f, axis=1) / h)[:, :-1]
-    told = np.abs(bends[known])
-    return float(np.median(told) / MEDIAN_OF_NORMAL) if len(told) >= FEWEST else 0.0
+    near = lattice.radii < radius
+    lines = padded[0::THIRD] | padded[1::THIRD] | padded[2::THIRD]
+    nodes = (lines[:, 0::THIRD] | lines[:, 1::THIRD] | lines[:, 2::THIRD])[:, near]
+    r, f = lattice.radii[near], sheet.f[:, near]
+
+    def spread(lag: int, power: int) -> float:
+        known = nodes[:, 2 * lag :] & nodes[:, lag:-lag] & nodes[:, : -2 * lag]
+        slope = (f[:, lag:] - f[:, :-lag]) / (r[lag:] - r[:-lag])
+        h = (r[2 * lag :] - r[: -2 * lag]) / 2
+        told = (np.abs(slope[:, lag:] - slope[:, :-lag]) / h**power)[known]
+        return float(np.median(told) / MEDIAN_OF_NORMAL) if len(told) >= FEWEST else 0.0
+
+    return spread(1, 0), spread(FAR_LAG, 1)

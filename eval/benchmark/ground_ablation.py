@@ -9,12 +9,15 @@ from eval.benchmark.ground_grid import Row, mean_figure, methods_of
 from eval.benchmark.ground_methods import Contestant, ours
 
 ABLATIONS: Mapping[str, Mapping[str, Any]] = {
-    "coarse surface": {"coarse": False},
+    "coarse sheet": {"coarse": False},
+    "a sheet that bends": {"coarse_bend": 0.15},
     "asymmetric weights": {"asymmetric": False},
     "reject obstacle cells": {"reject": False},
     "connectivity": {"connect": False},
     "refit": {"refit": False},
     "foot rule": {"foot_factor": 1.0},
+    "limits far from feet": {"point_height": 0.12, "foot_factor": 0.46},
+    "roughness in the limits": {"point_noise": 0.0},
     "threshold by slope": {"point_slope": 0.0},
     "threshold by range": {"point_range": 0.0},
 }

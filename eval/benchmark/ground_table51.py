@@ -13,7 +13,7 @@ from time import perf_counter
 import numpy as np
 from scipy.stats import binomtest
 
-from datmo.arrays import F64
+from datmo.arrays import F64, Array
 from datmo.errors import ConfigError
 from datmo.ground import METHODS, GroundConfig, GroundSegmenter
 from eval.benchmark.ground_figures import height_figures
@@ -111,7 +111,7 @@ def _told(segmenter: GroundSegmenter) -> tuple[float | None, float | None, dict[
     return *counts(learned.candidates, learned.supports), dict(learned.hyper)
 
 
-def counts(candidates: F64, supports: F64) -> tuple[float | None, float | None]:
+def counts(candidates: Array, supports: Array) -> tuple[float | None, float | None]:
     """Medians of n_PG and n_L (M,) over the segments that have candidates."""
     candidates, supports = np.asarray(candidates, float), np.asarray(supports, float)
     used = candidates > 0

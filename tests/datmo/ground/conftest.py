@@ -51,7 +51,7 @@ def field(rms: float, rng: np.random.Generator) -> F64:
     return np.asarray(rms * z / z.std())
 
 
-@numba.njit
+@numba.njit(cache=True)
 def height_at(z: F64, x: float, y: float) -> float:
     u, v = (x + 90.0) / 0.25, (y + 90.0) / 0.25
     i, j = min(max(int(u), 0), len(z) - 2), min(max(int(v), 0), len(z) - 2)
@@ -60,7 +60,7 @@ def height_at(z: F64, x: float, y: float) -> float:
     return (1 - a) * low + a * (z[i + 1, j] * (1 - b) + z[i + 1, j + 1] * b)
 
 
-@numba.njit
+@numba.njit(cache=True)
 def cast(z: F64, origin: F64, direction: F64, boxes: F64, limit: float) -> tuple[F64, I32]:
     """Range (n,) and object (n,) of rays; boxes (k, 8): x, y, z low, l, w, h, yaw, object."""
     n = len(direction)
@@ -129,13 +129,22 @@ def make_scene(
     people: int = 5,
     walls: int = 4,
     noise: float = 0.01,
+    beside: bool = False,
 ) -> Scene:
-    """One sweep over a field of that roughness, rising by `grade` [m/m] along +x and half of it along y."""
+    """One sweep over a field of that roughness, rising by `grade` [m/m] along +x and half of it along y.
+
+    With `beside` a car stands 3 m to the left, object 99, and a high wall behind it, so that nothing is
+    seen beyond.
+    """
     rng = np.random.default_rng(seed)
     z = field(ROUGHNESS[roughness], rng)
     xs = np.linspace(-HALF, HALF, len(z))
     z = z + grade * xs[:, None] + 0.5 * grade * xs[None]
     boxes = objects(z, rng, cars, people, walls)
+    if beside:
+        foot = height_at(z, 0.0, 3.9)
+        wall = [0.0, 5.2, foot - 2.0, 30.0, 0.3, 8.0, 0.0, 100]
+        boxes = np.concatenate([boxes, car(0.0, 3.9, foot, 0.0, 99), [wall]])
     elevation = np.radians(np.concatenate([np.linspace(2.4, -7.8, 32), np.linspace(-8.4, -23.8, 32)]))
     azimuth = np.pi - 2 * np.pi * (np.arange(columns) + 0.5) / columns
     e, a = (g.ravel() for g in np.meshgrid(elevation, azimuth, indexing="ij"))

@@ -22,6 +22,9 @@ CLOUDS = {
             RNG.uniform(0, 3, 500),
         ]
     ),
+    "a wall in front": np.column_stack(
+        [np.full(500, 8.0), RNG.uniform(-6, 6, 500), RNG.uniform(-0.5, 2, 500)]
+    ),
     "huge heights": np.column_stack([FLAT[:, :2], RNG.choice([-1e6, 1e6], 4000)]),
     "beyond float32": FLAT * 1e300,
     "all beyond": FLAT + np.array([1000, 0, 0]),
