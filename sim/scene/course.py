@@ -17,6 +17,7 @@ Key = tuple[str, str, int]
 NEAR = 2.2  # lanes with centres nearer than this share ground [m]
 STOP_LINE = 6.0  # ahead of a crossing, where walkers may cross [m]
 BEYOND = 80.0  # a course goes on in a straight line after its last lane [m]
+APART = 1.0  # lanes end to end that lie farther apart are bridged [m]
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +29,7 @@ class Lane:
         length: along the centre [m]. width: [m].
         crossing: shares ground with a lane that it neither leads to nor comes from.
         entry, leaving: nothing leads to it; it leads nowhere.
+        added: by which its end was carried on beyond that of highway-env's own lane [m].
     """
 
     key: Key
@@ -37,6 +39,7 @@ class Lane:
     crossing: bool = False
     entry: bool = False
     leaving: bool = False
+    added: float = 0.0
 
     def at(self, arc: F64) -> F64:
         """Points (m, 2) at arc lengths (m,) from its start."""
@@ -63,6 +66,22 @@ def crossings(lines: Mapping[Key, F64]) -> set[Key]:
     return found
 
 
+def bridged(lanes: Sequence[Lane]) -> tuple[list[Lane], list[int]]:
+    """Lanes end to end, straight pieces between those that lie apart, and where the lanes are in the list.
+
+    The arms of roundabout-v0 end 5.6 m from its ring.
+    """
+    pieces, places = [lanes[0]], [0]
+    for lane in lanes[1:]:
+        gap = np.stack([pieces[-1].line[-1], lane.line[0]])
+        length = float(np.hypot(*(gap[1] - gap[0])))
+        if length > APART:
+            pieces.append(Lane(lane.key, gap, length, lane.width))
+        places.append(len(pieces))
+        pieces.append(lane)
+    return pieces, places
+
+
 class Course:
     """The way of one vehicle: lanes end to end.
 
@@ -78,10 +97,12 @@ class Course:
 
     def __init__(self, lanes: Sequence[Lane], names: Mapping[Key, int]) -> None:
         self.keys = [lane.key for lane in lanes]
-        self.starts = np.concatenate([[0.0], np.cumsum([lane.length for lane in lanes])])
-        arcs = np.arange(0.0, self.starts[-1], STEP)
-        owner = np.clip(np.searchsorted(self.starts, arcs, side="right") - 1, 0, len(lanes) - 1)
-        parts = [lane.at(arcs[owner == i] - self.starts[i]) for i, lane in enumerate(lanes)]
+        pieces, places = bridged(lanes)
+        begins = np.concatenate([[0.0], np.cumsum([piece.length for piece in pieces])])
+        self.starts = begins[[*places, -1]]
+        arcs = np.arange(0.0, begins[-1], STEP)
+        owner = np.clip(np.searchsorted(begins, arcs, side="right") - 1, 0, len(pieces) - 1)
+        parts = [piece.at(arcs[owner == i] - begins[i]) for i, piece in enumerate(pieces)]
         after = np.arange(STEP, BEYOND, STEP)[:, None] * lanes[-1].direction(lanes[-1].length)
         self.points: F64 = np.concatenate([*parts, parts[-1][-1] + after])
         self.zones: list[tuple[float, float, int]] = []
@@ -107,15 +128,34 @@ class Course:
         return None
 
 
+def onward(lanes: Mapping[Key, Lane], last: Lane) -> list[Lane]:
+    """The lanes that go on from one, at most one a road: each is the nearest of its road, and the other way.
+
+    So nobody cuts across lanes to an exit, and who enters a ring of two lanes takes the outer one.
+    """
+    roads = dict.fromkeys(key[:2] for key in lanes if key[0] == last.key[1])
+    beside = [lane for lane in lanes.values() if lane.key[:2] == last.key[:2]]
+    found = []
+    for road in roads:
+        near = min((b for b in lanes.values() if b.key[:2] == road), key=lambda b: _apart(last, b))
+        if min(beside, key=lambda a: _apart(a, near)) is last:
+            found.append(near)
+    return found
+
+
 def follow(
     lanes: Mapping[Key, Lane], keys: Sequence[Key], least: float, rng: np.random.Generator
 ) -> list[Lane]:
     """The lanes `keys`, then on by chance, until `least` metres are reached or the road ends."""
     course = [lanes[key] for key in keys]
     while sum(lane.length for lane in course) < least:
-        onward = [lane for lane in lanes.values() if lane.key[0] == course[-1].key[1]]
-        if course[-1].leaving or not onward:
+        choice = onward(lanes, course[-1])
+        if course[-1].leaving or not choice:
             break
-        same = [lane for lane in onward if lane.key[2] == course[-1].key[2]] or onward
-        course.append(same[int(rng.integers(len(same)))])
+        course.append(choice[int(rng.integers(len(choice)))])
     return course
+
+
+def _apart(a: Lane, b: Lane) -> float:
+    """From the end of one lane to the beginning of another [m]."""
+    return float(np.hypot(*(b.line[0] - a.line[-1])))

@@ -12,7 +12,7 @@ from scenarios.spec import Scenario
 from sim.scene.autopilot import HARD, STEP, Claim, RightOfWay, braking
 from sim.scene.population import Arrival, Population
 from sim.scene.roads import Road
-from sim.scene.traffic import EGO_ID, EXTEND, Driver, Highway, mirrored, state_of
+from sim.scene.traffic import EGO_ID, Driver, Highway, mirrored, state_of
 from sim.scene.vehicles import State, body
 
 EGO = "car/0"
@@ -109,7 +109,7 @@ class Traffic:
         if not lane.leaving or lane.key == self._highway.first:
             return False
         along = self.ego.lane.local_coordinates(self.ego.position)[0]
-        return bool(along >= lane.length - EXTEND - PAST_END)
+        return bool(along >= lane.length - lane.added - PAST_END)
 
     def _add(self, arrivals: Sequence[Arrival]) -> None:
         made = [self._highway.drive(arrival) for arrival in arrivals]

@@ -21,7 +21,7 @@ from datmo.errors import ScenarioError, nearest
 from datmo.geometry import wrap_angle
 from scenarios.spec import Scenario
 from sim.scene.autopilot import STEP, Mover
-from sim.scene.course import Course, Key, Lane, crossings, follow
+from sim.scene.course import NEAR, Course, Key, Lane, crossings, follow, onward
 from sim.scene.population import Arrival, asking
 from sim.scene.vehicles import Body, State
 
@@ -40,8 +40,9 @@ EXTEND = 200.0
 """Roads that end are made longer by this much [m]."""
 
 EGO_ID = 0
-AHEAD, ASIDE, BENT = 6.0, 2.5, np.pi / 3
-"""A lane goes on in another that begins within so much of its end, along and across, and turns so much."""
+AHEAD, ASIDE, BENT = 6.0, 2.5, np.deg2rad(75)
+"""A lane goes on in another that begins within so much of its end, along and across, and turns so much:
+the arms of roundabout-generic meet their ring at 66 degrees."""
 FAR = 2000.0  # courses are at least this long where the road allows [m]
 _IDM = {"DISTANCE_WANTED": 10.0, "COMFORT_ACC_MAX": 3.0, "COMFORT_ACC_MIN": -5.0}
 """Of highway-env's IDM; its intersection leaves them changed for every environment of the process."""
@@ -163,17 +164,30 @@ def goes_on(lane: Any, onward: Any) -> bool:
     return bool(abs(along) < AHEAD and abs(aside) < ASIDE and abs(turn) < BENT)
 
 
+def _open(lane: Any, others: F64, start: float, end: float) -> bool:
+    """Whether a lane is straight and no other lies on it between two arc lengths, as parking rows do."""
+    if type(lane) is not StraightLane or not len(others):
+        return type(lane) is StraightLane
+    along, aside = (others - lane.start) @ lane.direction, (others - lane.start) @ lane.direction_lateral
+    return not ((along > start) & (along < end) & (np.abs(aside) < NEAR)).any()
+
+
 def extend(network: RoadNetwork) -> dict[Key, Lane]:
     """Lengthen the straight lanes at which roads end, in place, and list all lanes in the world."""
     lanes = network.lanes_dict()
     joints = [(a, b) for a in lanes for b in lanes if a != b and goes_on(lanes[a], lanes[b])]
     led_to, leading = {b for _, b in joints}, {a for a, _ in joints}
-    listed: dict[Key, tuple[bool, bool]] = {}
+    listed: dict[Key, tuple[bool, bool, float]] = {}
+    drawn = {key: [lane.position(s, 0) for s in np.arange(0.0, lane.length)] for key, lane in lanes.items()}
     for key, lane in lanes.items():
-        listed[key] = entry, leaving = key not in led_to, key not in leading
-        if type(lane) is StraightLane and (entry or leaving):
-            a = lane.position(-EXTEND if entry else 0.0, 0)
-            b = lane.position(lane.length + (EXTEND if leaving else 0.0), 0)
+        entry, leaving = key not in led_to, key not in leading
+        others = np.array([p for other in drawn if other != key for p in drawn[other]])
+        before = EXTEND * (entry and _open(lane, others, -EXTEND, -2 * NEAR))
+        after = EXTEND * (leaving and _open(lane, others, lane.length + 2 * NEAR, lane.length + EXTEND))
+        listed[key] = entry, leaving, after
+        if before or after:
+            a = lane.position(-before, 0)
+            b = lane.position(lane.length + after, 0)
             lane.__init__(a, b, lane.width, lane.line_types, lane.forbidden, lane.speed_limit, lane.priority)
     lines = {}
     for key, lane in lanes.items():
@@ -222,7 +236,7 @@ class Highway:
         lane, ego = network.get_lane(self.first), scenario.ego
         arc = float(lane.local_coordinates(position)[0])
         if ego.start is not None:
-            arc = max(lane.length - EXTEND * self.lanes[self.first].leaving - ego.start, 5.0)
+            arc = max(lane.length - self.lanes[self.first].added - ego.start, 5.0)
         self.start = mirrored(lane.position(arc, 0))
         self._arc = arc
 
@@ -268,9 +282,18 @@ class Highway:
         ego = self.env.vehicle
         return self.env.road.network, ego.position.copy(), float(ego.heading)
 
+    def _goal(self) -> str | None:
+        """The node that the environment's config sends the ego to, or that it planned for it, if any."""
+        if self.env is None:
+            return None
+        plan = getattr(self.env.vehicle, "route", None)
+        return self.env.config.get("destination") or (plan[-1][1] if plan else None)
+
     def _route(self) -> list[Key]:
-        """The ego's lanes to the destination that the environment's config names, if any."""
-        first, network = self.first, self.road.network
-        goal = self.env.config.get("destination") if self.env is not None else None
-        nodes = network.shortest_path(first[1], goal) if goal else []
-        return [first, *((a, b, min(first[2], len(network.graph[a][b]) - 1)) for a, b in pairwise(nodes))]
+        """The ego's lanes to its goal, one that joins the other."""
+        keys, goal = [self.first], self._goal()
+        nodes = self.road.network.shortest_path(self.first[1], goal) if goal else []
+        for a, b in pairwise(nodes):
+            joined = [lane.key for lane in onward(self.lanes, self.lanes[keys[-1]]) if lane.key[:2] == (a, b)]
+            keys.append(joined[0] if joined else (a, b, 0))
+        return keys
