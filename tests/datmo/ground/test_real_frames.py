@@ -1,4 +1,4 @@
-"""Real sweeps without labels: held against two published methods, which are right where they are of one mind."""
+"""Real sweeps without labels, held against two published methods: they are right where they agree."""
 
 from __future__ import annotations
 

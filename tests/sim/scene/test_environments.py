@@ -107,10 +107,11 @@ def test_facing_rows_of_parking_do_not_run_into_each_other() -> None:
     assert apart.min() > 10
 
 
-def test_only_straight_lanes_are_carried_on() -> None:
-    made = Traffic(scenario("lane-keeping-v0"), np.random.SeedSequence(0))
-    bent = made._highway.lanes["a", "b", 0]
+def test_only_straight_lanes_with_nothing_ahead_are_carried_on() -> None:
+    lanes = Traffic(scenario("lane-keeping-v0"), np.random.SeedSequence(0))._highway.lanes
+    bent, towards_it = lanes["a", "b", 0], lanes["d", "a", 0]
     assert bent.leaving
-    assert bent.added == 0
-    others = [lane.added for key, lane in made._highway.lanes.items() if key != bent.key and lane.leaving]
-    assert set(others) <= {EXTEND}
+    assert towards_it.leaving
+    assert bent.added == towards_it.added == 0
+    lanes = Traffic(scenario("highway-v0"), np.random.SeedSequence(0))._highway.lanes
+    assert {lane.added for lane in lanes.values() if lane.leaving} == {EXTEND}
