@@ -1,9 +1,8 @@
 """The method `default`: one field over all cells, tied along range and azimuth, of learned local roughness.
 
 ISO 8608 ground has height differences whose variance grows with distance, E[Δz²] = c d (its profiles fall as
-n⁻²). The field takes that as its prior: neighbouring nodes pull at each other with precision 1 / (c d), c
-learned in each frame around every cell from the differences of neighbouring cells. A line along the radius
-with its neighbours held is a tridiagonal system, solved exactly; lines take turns (Gauss-Seidel by line).
+n⁻²). The field takes that as its prior (see `membrane`), c learned in each frame around every cell from the
+differences of neighbouring cells.
 """
 
 from __future__ import annotations
@@ -12,20 +11,22 @@ import numba
 import numpy as np
 
 from datmo.arrays import F64, Bool
+from datmo.ground.chebyshev import weights
 from datmo.ground.config import GroundConfig
 from datmo.ground.grid import PolarGrid
+from datmo.ground.membrane import links, settle
 from datmo.ground.regression import Cells, Heights, Learned, Regression
 
 SMOOTHEST = 1e-7
 GROWTH_SCALES = (0.12, 0.06, 0.04)
 BELOW = 2.0
 DOUBT = 20.0
-TURNS = 2
+# A line's neighbours pull at it at most as much as all that holds it.
+GROWTH_STEPS, STEPS = weights(3, 0.3, 2.0), weights(4, 0.3, 2.0)
 WINDOW_LINES, WINDOW_BINS = 3, 3
 PRIOR_CELLS = 4.0
 LARGEST_STEP = 0.3
 TINY = 1e-9
-FRONTS, TOGETHER = 4, 8  # lines
 PULL = 0.04  # how far a cell's mean may be off, as a share of c times the cell's size
 # Std of the height at the middle of a cell over sqrt(c size), and of one between seen cells over
 # sqrt(c / Σ 1/d), by range [m]: fitted to the true heights of simulated ground of classes A to G. They grow
@@ -33,88 +34,6 @@ PULL = 0.04  # how far a cell's mean may be off, as a share of c times the cell'
 RANGES = (5.0, 15.0, 25.0, 35.0, 45.0)
 SEEN_STD = (0.45, 0.65, 0.85, 1.15, 2.0)
 BETWEEN_STD = (1.2, 1.5, 1.5, 1.9, 2.2)
-
-
-@numba.njit(cache=True, nogil=True)
-def links(c: F64, r: F64) -> tuple[F64, F64]:
-    """Precision [1/m²] of the difference of each node (M, N) from the next outwards, (M, N - 1), and from
-    the same node of the next line, (M, N)."""
-    M, N = c.shape
-    out, across = np.empty((M, N - 1)), np.empty((M, N))
-    width = 2 * np.pi / M
-    for m in range(M):
-        o = m + 1 if m + 1 < M else 0
-        for b in range(N):
-            across[m, b] = 2 / ((c[m, b] + c[o, b]) * width * r[b])
-            if b + 1 < N:
-                out[m, b] = 2 / ((c[m, b] + c[m, b + 1]) * (r[b + 1] - r[b]))
-    return out, across
-
-
-@numba.njit(cache=True, nogil=True)
-def factor(w: F64, out: F64, across: F64, ridge: float) -> tuple[F64, F64]:
-    """Of every line with its neighbours held: 1 / pivots, and the share of the next node in each, (M, N).
-
-    Args:
-        w: (M, N) precision of each observation, 0 without one. out, across: of `links`. ridge: precision
-        of a node about 0.
-    """
-    M, N = w.shape
-    inverse, upper = np.empty((M, N)), np.zeros((M, N))
-    for start in range(0, M, TOGETHER):  # several lines together: each waits for its own divisions only
-        for b in range(N):
-            for m in range(start, min(start + TOGETHER, M)):
-                diagonal = w[m, b] + ridge + across[m, b] + across[m - 1, b]
-                if b > 0:
-                    diagonal += out[m, b - 1] * (1 - upper[m, b - 1])
-                if b + 1 < N:
-                    diagonal += out[m, b]
-                inverse[m, b] = 1 / diagonal
-                if b + 1 < N:
-                    upper[m, b] = out[m, b] * inverse[m, b]
-    return inverse, upper
-
-
-@numba.njit(cache=True, nogil=True)
-def relax(f: F64, pull: F64, inverse: F64, upper: F64, out: F64, across: F64) -> None:
-    """One turn of all lines: each solved (Thomas) with its neighbours held; f (M, N) in place.
-
-    `FRONTS` lines far from each other are solved together, which hides the wait of each for itself.
-
-    Args:
-        pull: (M, N) precision x observed height. inverse, upper: of `factor`. out, across: of `links`.
-    """
-    M, N = f.shape
-    fronts = FRONTS if M >= 3 * FRONTS else 1
-    step = M // fronts
-    x = np.zeros((N, FRONTS))
-    for j in range(step + M % fronts):
-        lines = fronts if j < step else 1
-        first = j if j < step else M - M % fronts + j - step
-        for k in range(lines):
-            m = first + k * step
-            after = m + 1 if m + 1 < M else 0
-            for b in range(N):
-                right = pull[m, b] + across[m, b] * f[after, b] + across[m - 1, b] * f[m - 1, b]
-                x[b, k] = right * inverse[m, b]
-        for b in range(1, N):
-            for k in range(lines):
-                m = first + k * step
-                x[b, k] += out[m, b - 1] * inverse[m, b] * x[b - 1, k]
-        for b in range(N - 2, -1, -1):
-            for k in range(lines):
-                x[b, k] += upper[first + k * step, b] * x[b + 1, k]
-        for k in range(lines):
-            f[first + k * step] = x[:, k]
-
-
-@numba.njit(cache=True, nogil=True)
-def settle(f: F64, w: F64, y: F64, out: F64, across: F64, ridge: float, turns: int) -> None:
-    """`turns` of `relax` towards heights y (M, N) of precision w; f (M, N) in place."""
-    inverse, upper = factor(w, out, across, ridge)
-    pull = w * y
-    for _ in range(turns):
-        relax(f, pull, inverse, upper, out, across)
 
 
 @numba.njit(cache=True, nogil=True)
@@ -129,7 +48,7 @@ def robust(y: F64, use: Bool, noise: F64, out: F64, across: F64, ridge: float) -
                 u = e if e > 0 else e / BELOW
                 fall = 1 + u * u
                 w[m, b] = 1 / (noise[m, b] * fall * fall) if use[m, b] else 0.0
-        settle(f, w, y, out, across, ridge, TURNS)
+        settle(f, w, y, out, across, ridge, GROWTH_STEPS)
     return f
 
 
@@ -272,10 +191,10 @@ class Field(Regression):
         out, across = links(c, self._r)
         w = np.where(cells.use, 1 / (noise + PULL * c * self._size), 0.0)
         f = y.copy()
-        settle(f, w, y, out, across, self._ridge, TURNS)
+        settle(f, w, y, out, across, self._ridge, STEPS)
         if cells.azimuth is not None:
             to_middle(f, y, cells.use, cells.r, cells.azimuth, self._r)
-        settle(f, w, y, out, across, self._ridge, TURNS)
+        settle(f, w, y, out, across, self._ridge, STEPS)
         seen = noise + self._seen_share * c * self._size
         between = self._between_share * c / np.maximum(conductance(cells.use, self._r), TINY)
         var = np.minimum(np.where(cells.use, seen, between), self.config.most_std**2)

@@ -3,7 +3,7 @@
 Minimises over the heights f of the nodes
     Σ w_i (y_i - f(x_i))² + ∬ (f_rr² + f_tt²) / τ² + (f_r² + f_t²) / ς² dA + ρ Σ f²
 where f(x_i) is bilinear in azimuth and radius. With its neighbours held, a line along the radius is
-a system of five bands, solved exactly; lines take turns (Gauss-Seidel by line).
+a system of five bands, solved exactly; all lines are solved at once, and the steps weighted by Chebyshev.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 from datmo.arrays import F64, I64
 
 TURN = 2 * np.pi
-FRONTS = 4  # lines that are solved together
+WRAP = 2  # lines repeated at either end of a turn, so that none needs a search for its neighbours
 
 
 @dataclass(frozen=True)
@@ -116,105 +116,121 @@ def evaluate(f: F64, line: I64, s: F64, node: I64, t: F64) -> F64:
 
 @numba.njit(cache=True, nogil=True)
 def gather(w: F64, y: F64, line: I64, s: F64, node: I64, t: F64, out: F64) -> None:
-    """Normal equations of the observations, written to `out` (5, M, N): a line's diagonal and first
-    off-diagonal, the same of its coupling with the next line, and the right-hand side."""
+    """Normal equations of the observations, written to `out` (5, N, 1 + M): a line's diagonal and first
+    off-diagonal, the same of its coupling with the next line, and the right-hand side; the last line
+    stands before the first once more."""
     out[:] = 0.0
-    M = out.shape[1]
+    M = out.shape[2] - 1
     for i in range(len(w)):
         if w[i] == 0.0:
             continue
-        a, q = line[i], node[i]
-        b = a + 1 if a + 1 < M else 0
+        a, q = 1 + line[i], node[i]
+        b = a + 1 if a < M else 1
         t1 = t[i]
         t0 = 1 - t1
         s1 = s[i]
         s0 = 1 - s1
         for m, weight in ((a, w[i] * s0 * s0), (b, w[i] * s1 * s1)):
-            out[0, m, q] += weight * t0 * t0
-            out[0, m, q + 1] += weight * t1 * t1
-            out[1, m, q] += weight * t0 * t1
+            out[0, q, m] += weight * t0 * t0
+            out[0, q + 1, m] += weight * t1 * t1
+            out[1, q, m] += weight * t0 * t1
         cross = w[i] * s0 * s1
-        out[2, a, q] += cross * t0 * t0
-        out[2, a, q + 1] += cross * t1 * t1
-        out[3, a, q] += cross * t0 * t1
+        out[2, q, a] += cross * t0 * t0
+        out[2, q + 1, a] += cross * t1 * t1
+        out[3, q, a] += cross * t0 * t1
         pull = w[i] * y[i]
-        out[4, a, q] += pull * s0 * t0
-        out[4, a, q + 1] += pull * s0 * t1
-        out[4, b, q] += pull * s1 * t0
-        out[4, b, q + 1] += pull * s1 * t1
+        out[4, q, a] += pull * s0 * t0
+        out[4, q + 1, a] += pull * s0 * t1
+        out[4, q, b] += pull * s1 * t0
+        out[4, q + 1, b] += pull * s1 * t1
+    out[:, :, 0] = out[:, :, M]
 
 
 @numba.njit(cache=True, nogil=True)
 def factor(normal: F64, bands: F64) -> F64:
     """L D Lᵀ of every line with its neighbours held: 1 / D, first and second factor below the diagonal,
-    (3, M, N).
+    (3, N, M).
 
     Args:
-        normal: (5, M, N) of `gather`. bands: of `Prior`.
+        normal: (5, N, 1 + M) of `gather`. bands: of `Prior`.
     """
-    _, M, N = normal.shape
-    out = np.zeros((3, M, N))
+    N, M = normal.shape[1], normal.shape[2] - 1
+    out = np.zeros((3, N, M))
     inverse, e, g = out
-    for b in range(N):  # all lines together: each waits for its own divisions only
+    for b in range(N):
         for m in range(M):
-            d = normal[0, m, b] + bands[0, b]
-            off = normal[1, m, b] + bands[1, b]
+            d = normal[0, b, 1 + m] + bands[0, b]
+            off = normal[1, b, 1 + m] + bands[1, b]
             if b > 0:
-                d -= e[m, b - 1] * e[m, b - 1] / inverse[m, b - 1]
-                off -= e[m, b - 1] * bands[2, b - 1]
+                d -= e[b - 1, m] * e[b - 1, m] / inverse[b - 1, m]
+                off -= e[b - 1, m] * bands[2, b - 1]
             if b > 1:
-                d -= g[m, b - 2] * bands[2, b - 2]
-            inverse[m, b] = 1 / d
-            e[m, b] = off * inverse[m, b]
-            g[m, b] = bands[2, b] * inverse[m, b]
+                d -= g[b - 2, m] * bands[2, b - 2]
+            inverse[b, m] = 1 / d
+            e[b, m] = off * inverse[b, m]
+            g[b, m] = bands[2, b] * inverse[b, m]
     return out
 
 
 @numba.njit(cache=True, nogil=True)
-def _right(f: F64, normal: F64, near: F64, second: F64, m: int, x: F64) -> None:
-    """Right-hand side (N,) of line m with its neighbours held, written to x."""
-    M, N = f.shape
-    p, q = m - 1 if m > 0 else M - 1, m + 1 if m + 1 < M else 0
-    before, after = f[p], f[q]
-    before2, after2 = f[p - 1 if p > 0 else M - 1], f[q + 1 if q + 1 < M else 0]
+def _right(f: F64, normal: F64, near: F64, second: F64, x: F64) -> None:
+    """Right-hand side of every line with its neighbours in f (N, M + 2 WRAP) held, written to x (N, M)."""
+    N, M = x.shape
+    pull, same, skew = normal[4], normal[2], normal[3]
     for b in range(N):
-        x[b] = normal[4, m, b] + near[b] * (before[b] + after[b]) + second[b] * (before2[b] + after2[b])
-        x[b] -= normal[2, m, b] * after[b] + normal[2, p, b] * before[b]
-    for b in range(N - 1):
-        x[b] -= normal[3, m, b] * after[b + 1] + normal[3, p, b] * before[b + 1]
-    for b in range(N - 1):
-        x[b + 1] -= normal[3, m, b] * after[b] + normal[3, p, b] * before[b]
+        one, two = near[b], second[b]
+        for m in range(M):
+            k = m + WRAP
+            x[b, m] = pull[b, m + 1] + one * (f[b, k - 1] + f[b, k + 1]) + two * (f[b, k - 2] + f[b, k + 2])
+            x[b, m] -= same[b, m + 1] * f[b, k + 1] + same[b, m] * f[b, k - 1]
+        if b + 1 < N:
+            for m in range(M):
+                x[b, m] -= skew[b, m + 1] * f[b + 1, m + WRAP + 1] + skew[b, m] * f[b + 1, m + WRAP - 1]
+        if b > 0:
+            for m in range(M):
+                x[b, m] -= skew[b - 1, m + 1] * f[b - 1, m + WRAP + 1]
+                x[b, m] -= skew[b - 1, m] * f[b - 1, m + WRAP - 1]
 
 
 @numba.njit(cache=True, nogil=True)
-def relax(f: F64, normal: F64, factors: F64, near: F64, second: F64) -> None:
-    """One turn of all lines, each solved with its neighbours held; f (M, N) in place.
+def _solve(x: F64, factors: F64) -> None:
+    """Every line of the right-hand side x (N, M), solved in place by `factors`."""
+    N, M = x.shape
+    inverse, e, g = factors
+    for b in range(1, N):
+        for m in range(M):
+            x[b, m] -= e[b - 1, m] * x[b - 1, m]
+        if b > 1:
+            for m in range(M):
+                x[b, m] -= g[b - 2, m] * x[b - 2, m]
+    for b in range(N - 1, -1, -1):
+        for m in range(M):
+            x[b, m] *= inverse[b, m]
+        if b + 1 < N:
+            for m in range(M):
+                x[b, m] -= e[b, m] * x[b + 1, m]
+        if b + 2 < N:
+            for m in range(M):
+                x[b, m] -= g[b, m] * x[b + 2, m]
 
-    `FRONTS` lines far from each other are solved together, which hides the wait of each for itself.
+
+@numba.njit(cache=True, nogil=True)
+def relax(f: F64, normal: F64, factors: F64, near: F64, second: F64, steps: F64) -> None:
+    """Draw f (M, N), in place, to the solution in some `steps` (k, 2) of `chebyshev`.
 
     Args:
-        normal: (5, M, N) of `gather`. factors: of `factor`. near, second: of `Prior`.
+        normal: (5, N, 1 + M) of `gather`. factors: of `factor`. near, second: of `Prior`.
     """
     M, N = f.shape
-    inverse, e, g = factors
-    fronts = FRONTS if M >= 3 * FRONTS else 1
-    step = M // fronts
-    x = np.zeros((FRONTS, N + 2))
-    for j in range(step + M % fronts):
-        lines = fronts if j < step else 1
-        first = j if j < step else M - M % fronts + j - step
-        for k in range(lines):
-            _right(f, normal, near, second, first + k * step, x[k, :N])
-        for b in range(1, N):
-            for k in range(lines):
-                m = first + k * step
-                x[k, b] -= e[m, b - 1] * x[k, b - 1]
-                if b > 1:
-                    x[k, b] -= g[m, b - 2] * x[k, b - 2]
-        for b in range(N - 1, -1, -1):
-            for k in range(lines):
-                m = first + k * step
-                x[k, b] = x[k, b] * inverse[m, b] - e[m, b] * x[k, b + 1] - g[m, b] * x[k, b + 2]
-        for k in range(lines):
-            f[first + k * step] = x[k, :N]
-            x[k, N:] = 0.0
+    x, step, g = np.empty((N, M)), np.zeros((N, M)), np.empty((N, M + 2 * WRAP))
+    g[:, WRAP : M + WRAP] = f.T
+    for k in range(len(steps)):
+        g[:, :WRAP], g[:, M + WRAP :] = g[:, M : M + WRAP], g[:, WRAP : 2 * WRAP]
+        _right(g, normal, near, second, x)
+        _solve(x, factors)
+        alpha, beta = steps[k]
+        for b in range(N):
+            for m in range(M):
+                step[b, m] = alpha * (x[b, m] - g[b, m + WRAP]) + beta * step[b, m]
+                g[b, m + WRAP] += step[b, m]
+    f[:] = g[:, WRAP : M + WRAP].T

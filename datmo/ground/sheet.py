@@ -12,6 +12,7 @@ import numba
 import numpy as np
 
 from datmo.arrays import F64, I64, Bool
+from datmo.ground.chebyshev import weights
 from datmo.ground.lattice import Lattice, Prior, corners, evaluate, factor, gather, relax
 
 THIRD = 3
@@ -19,7 +20,8 @@ QUANTILE = 0.35
 FIRST_SCALES = np.geomspace(1.0, 0.1, 6)
 ROBUST_SCALES = np.geomspace(4.0, 1.0, 4)
 LATER_SCALES = np.array([2.0, 1.0])
-TURNS, EXTRA = 2, 6
+# The lines next to a line and those behind pull at it with up to 10/6 of what holds it.
+STEPS, LAST_STEPS = weights(4, 0.2, 8 / 3), weights(12, 0.1, 8 / 3)
 BELOW = 3.0
 MEDIAN_OF_NORMAL, FEWEST = 0.6745, 10
 FAR_LAG = 3
@@ -61,10 +63,11 @@ def _settle(
     below: float,
     first: F64,
     later: F64,
-    turns: int,
-    extra: int,
+    steps: F64,
+    last: F64,
 ) -> None:
-    normal, w = np.empty((5, *f.shape)), np.empty(len(y))
+    M, N = f.shape
+    normal, w = np.empty((5, N, 1 + M)), np.empty(len(y))
     for k in range(len(first) + len(later)):
         expected = evaluate(f, line, s, node, t)
         for i in range(len(y)):
@@ -75,10 +78,9 @@ def _settle(
                 w[i] = weight[i] * _robust_weight(e, later[k - len(first)], below)
         gather(w, y, line, s, node, t, normal)
         if k == 0 and len(first) == 0:
-            f[:] = np.where(normal[0] > 0.0, f, 0.0)  # what bore on these nodes is out
+            f[:] = np.where(normal[0, :, 1:].T > 0.0, f, 0.0)  # what bore on these nodes is out
         factors = factor(normal, bands)
-        for _ in range(turns + (extra if k == len(first) + len(later) - 1 else 0)):
-            relax(f, normal, factors, near, second)
+        relax(f, normal, factors, near, second, last if k == len(first) + len(later) - 1 else steps)
 
 
 @dataclass(frozen=True)
@@ -122,11 +124,11 @@ def settle(
     quantile, below = (QUANTILE, BELOW) if asymmetric else (0.5, 1.0)
     scales = (FIRST_SCALES, noise * ROBUST_SCALES) if first else (np.empty(0), noise * LATER_SCALES)
     bands = prior.bands, prior.next, prior.second
-    extra = 0 if first else EXTRA
+    last = STEPS if first else LAST_STEPS
     rows = np.flatnonzero(weight)
     line, s, node, t = places
     at = line[rows], s[rows], node[rows], t[rows]
-    _settle(f, y[rows], weight[rows], *at, *bands, quantile, below, *scales, TURNS, extra)
+    _settle(f, y[rows], weight[rows], *at, *bands, quantile, below, *scales, STEPS, last)
     return Sheet(sheet.lattice, f)
 
 

@@ -69,8 +69,10 @@ def cast(z: F64, origin: F64, direction: F64, boxes: F64, limit: float) -> tuple
         d, t = direction[i], 0.5
         while t < limit:
             gap = origin[2] + t * d[2] - height_at(z, origin[0] + t * d[0], origin[1] + t * d[1])
-            if gap < 0.002:
-                reach[i] = t
+            if gap < 0.002:  # the last bit by the secant
+                u = t + 0.02
+                later = origin[2] + u * d[2] - height_at(z, origin[0] + u * d[0], origin[1] + u * d[1])
+                reach[i] = t + 0.02 * gap / max(gap - later, 1e-4)
                 break
             t += max(0.002, gap / (abs(d[2]) + 1.0))
         for k in range(len(boxes)):

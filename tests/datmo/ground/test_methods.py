@@ -96,11 +96,7 @@ def test_order_and_copies_do_not_matter(method: str, sweeps: list[np.ndarray]) -
     assert np.allclose(twice.height[: len(points)], whole.height, atol=1e-5)
 
 
-UNSETTLED = pytest.mark.xfail(reason="open: without the sheet the field's turns stop 0.3 mm short of settled")
-TURNING = [pytest.param(m, marks=UNSETTLED) if m == "default" else m for m in METHODS]
-
-
-@pytest.mark.parametrize("method", TURNING)
+@pytest.mark.parametrize("method", METHODS)
 def test_turning_the_cloud_turns_the_ground(method: str, sweeps: list[np.ndarray]) -> None:
     """Up to float32 without the coarse sheet, whose lines are a third of the segments."""
     points, a = sweeps[0].astype(float), np.radians(46)

@@ -18,10 +18,9 @@ STEEP = pytest.param(
     0.27,
     0.99,
     0.05,
-    marks=pytest.mark.xfail(reason="open: one car 9 m off on a slope of 30 % lifts the sheet; leak 0.18"),
-)
-UNSETTLED = pytest.mark.xfail(
-    reason="open: without the sheet the field's turns stop 0.4 to 1.5 mm short of settled"
+    marks=pytest.mark.xfail(
+        reason="open: 30 % downhill the nearest ring is at 10 m, a car at 8 m has no foot; leak 0.18"
+    ),
 )
 
 
@@ -96,9 +95,10 @@ def test_order_and_copies_do_not_matter(scene: Make) -> None:
     assert np.allclose(twice.height[: len(points)], whole.height, atol=1e-5)
 
 
-@pytest.mark.parametrize("degrees", [pytest.param(2, marks=UNSETTLED), pytest.param(46, marks=UNSETTLED), 90])
+@pytest.mark.parametrize("degrees", [2, 6, 46, 90])
 def test_turning_the_cloud_turns_the_ground(scene: Make, degrees: int) -> None:
-    """Up to float32 without the coarse sheet, whose knots stand on a square; nearly with it."""
+    """Up to float32 by whole segments without the sheet, whose lines are 6 degrees apart, and by whole
+    lines with it; nearly with it by segments."""
     points = scene("E", 0.1, seed=16, columns=521).points.astype(float)
     a = np.radians(degrees)
     turned = np.column_stack(
@@ -107,7 +107,8 @@ def test_turning_the_cloud_turns_the_ground(scene: Make, degrees: int) -> None:
     # Rounding moves points that lie on an edge; leave them out.
     where = np.degrees(np.arctan2(points[:, 1], points[:, 0])) / 2
     off_edge = np.abs(where - np.round(where)) > 1e-4
-    for config, share, height in ((GroundConfig(coarse=False), 0.9999, 1e-5), (GroundConfig(), 0.999, 3e-3)):
+    sheet = (1.0, 1e-5) if degrees % 6 == 0 else (0.999, 0.025)
+    for config, share, height in ((GroundConfig(coarse=False), 0.9999, 1e-5), (GroundConfig(), *sheet)):
         one = segment_ground(points[off_edge], config=config)
         two = segment_ground(turned[off_edge], config=config)
         assert np.mean(one.is_ground == two.is_ground) >= share
