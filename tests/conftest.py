@@ -14,8 +14,13 @@ ROOT = Path(__file__).parents[1]
 
 @pytest.fixture(scope="session", autouse=True)
 def _own_cache(tmp_path_factory: pytest.TempPathFactory) -> None:
-    """Grounds that tests build are kept for the session only, wherever the environment says nothing else."""
-    os.environ.setdefault("DATMO_CACHE_DIR", str(tmp_path_factory.mktemp("cache")))
+    """Grounds that tests build are kept for the session only, wherever the environment says nothing else.
+
+    Processes that share the tests share them.
+    """
+    base = tmp_path_factory.getbasetemp()
+    own = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+    os.environ.setdefault("DATMO_CACHE_DIR", str(own / "cache"))
 
 
 @pytest.fixture(scope="session")

@@ -7,23 +7,29 @@ each on a course of lanes; what they wish for is cut down by the right of way, s
 from __future__ import annotations
 
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from itertools import pairwise
 from typing import Any
 
+import gymnasium as gym
 import numpy as np
+from gymnasium.spaces import Discrete, Space
 
 from datmo.arrays import F64
+from datmo.errors import ScenarioError, nearest
 from datmo.geometry import wrap_angle
 from scenarios.spec import Scenario
 from sim.scene.autopilot import STEP, Mover
 from sim.scene.course import NEAR, Course, Key, Lane, crossings, follow, onward
-from sim.scene.environment import make, quiet
 from sim.scene.population import Arrival, asking
+from sim.scene.strict import check
 from sim.scene.vehicles import Body, State
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")
     import highway_env  # noqa: F401  # registers its environments
+    from highway_env.envs.common.action import ActionType
     from highway_env.road.lane import StraightLane
     from highway_env.road.road import Road as HighwayRoad
     from highway_env.road.road import RoadNetwork
@@ -42,6 +48,14 @@ the arms of roundabout-generic meet their ring at 66 degrees."""
 FAR = 2000.0  # courses are at least this long where the road allows [m]
 _IDM = {"DISTANCE_WANTED": 10.0, "COMFORT_ACC_MAX": 3.0, "COMFORT_ACC_MIN": -5.0}
 """Of highway-env's IDM; its intersection leaves them changed for every environment of the process."""
+
+
+@contextmanager
+def quiet() -> Iterator[None]:
+    """highway-env warns that its ids are out of date and that its own arguments are deprecated."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        yield
 
 
 def mirrored(xy: Any) -> F64:
@@ -98,6 +112,39 @@ class Driver(IDMVehicle):  # type: ignore[misc]
     def drive(self, acceleration: float) -> None:
         """Take another acceleration than the wished one [m/s²]."""
         self.before = self.action["acceleration"] = acceleration
+
+
+def make(scenario: Scenario) -> Any:
+    """The highway-env environment of a scenario, configured, or None.
+
+    Raises:
+        ScenarioError: it is unknown, has no such configuration key, or wants another type of value there.
+    """
+    name, config = scenario.traffic.environment, scenario.traffic.config
+    if name is None:
+        return None
+    known = [key for key, spec in gym.registry.items() if "highway_env." in str(spec.entry_point)]
+    if name not in known:
+        raise ScenarioError(
+            f"traffic.environment = {name!r} is no environment of highway-env; {nearest(name, known)}"
+        )
+    with quiet():
+        env: Any = gym.make(name, disable_env_checker=True).unwrapped
+        check(config, env.config, ActionType, f"of {name}", "traffic.config")
+        env.configure({**config, "observation": {"type": "AttributesObservation", "attributes": []}})
+        env.define_spaces()
+    return env
+
+
+def action_space(scenario: Scenario) -> Space[Any]:
+    """`Discrete(1)` where the ego drives or stands by itself, else highway-env's action space."""
+    if scenario.ego.control != "agent":
+        return Discrete(1)
+    env = make(scenario)
+    if env is None:
+        raise ScenarioError("ego.control = 'agent' needs traffic.environment; choose a highway-env id")
+    space: Space[Any] = env.action_space
+    return space
 
 
 def straight_network() -> RoadNetwork:

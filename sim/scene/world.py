@@ -16,7 +16,6 @@ from sim.scan.units import unit
 from sim.scene import clearance
 from sim.scene.contact import stand
 from sim.scene.curve import hermite
-from sim.scene.environment import action_space
 from sim.scene.flow import Traffic
 from sim.scene.motion import Poses, edges
 from sim.scene.pedestrians import Crowd
@@ -24,6 +23,7 @@ from sim.scene.roads import Road
 from sim.scene.scenery.around import around as surroundings
 from sim.scene.script import Script, looks_of
 from sim.scene.terrain import Terrain, build_terrain
+from sim.scene.traffic import action_space
 from sim.scene.vehicles import State, body
 from sim.scene.walkers.boxes import join, of_parked, of_things
 

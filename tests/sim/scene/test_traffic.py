@@ -10,8 +10,8 @@ from gymnasium.spaces import Box, Discrete
 from datmo.errors import ScenarioError
 from scenarios.load import load
 from scenarios.spec import Scenario
-from sim.scene.environment import action_space, quiet
 from sim.scene.flow import Traffic
+from sim.scene.traffic import action_space, quiet
 
 DT = 0.05
 

@@ -7,7 +7,8 @@ import pytest
 
 from datmo.errors import ScenarioError
 from scenarios.spec import Scenario
-from sim.scene.environment import check, make, quiet
+from sim.scene.strict import check
+from sim.scene.traffic import ActionType, make, quiet
 
 META = "DiscreteMetaAction"
 
@@ -67,4 +68,4 @@ def test_every_environment_takes_its_own_configuration() -> None:
         with quiet():
             own = gym.make(name, disable_env_checker=True).unwrapped.config
         own = {key: value for key, value in own.items() if key not in ("observation", "action")}
-        check(own, own, f"of {name}", "traffic.config")
+        check(own, own, ActionType, f"of {name}", "traffic.config")
