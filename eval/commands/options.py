@@ -30,7 +30,9 @@ Frames = Annotated[
 ]
 GroundMethod = Annotated[
     str | None,
-    typer.Option("--ground", metavar="METHOD", callback=known_method, help="Ground method; z by default."),
+    typer.Option(
+        "--ground", metavar="METHOD", callback=known_method, help="Ground method; `default` unless given."
+    ),
 ]
 Settings = Annotated[
     list[str] | None,

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 def segment(
     cloud: Annotated[Path, typer.Argument(metavar="FILE.bin", help="float32 x, y, z, intensity (KITTI).")],
     out: Annotated[Path, typer.Option("--out", metavar="FILE.label", help="Where the labels go.")],
-    method: Annotated[str, typer.Option("--method", help="Ground method.")] = "z",
+    method: Annotated[str, typer.Option("--method", help="Ground method.")] = "default",
     picture: o.Picture = None,
     force: o.Force = False,
 ) -> None:
@@ -29,7 +29,7 @@ def segment(
     \b
     Examples:
       datmo segment scan.bin --out scan.label
-      datmo segment scan.bin --method z --out scan.label --picture ground.png
+      datmo segment scan.bin --method zl --out scan.label --picture ground.png
     """
     from datmo.config import DatmoConfig
     from datmo.ground import segment_ground
