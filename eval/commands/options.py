@@ -31,7 +31,7 @@ Frames = Annotated[
 GroundMethod = Annotated[
     str | None,
     typer.Option(
-        "--ground", metavar="METHOD", callback=known_method, help="Ground method; `default` unless given."
+        "--ground", metavar="METHOD", callback=known_method, help="Ground method; default: default."
     ),
 ]
 Settings = Annotated[
