@@ -21,7 +21,7 @@ FIRST_SCALES = np.geomspace(1.0, 0.1, 6)
 ROBUST_SCALES = np.geomspace(4.0, 1.0, 4)
 LATER_SCALES = np.array([2.0, 1.0])
 # The lines next to a line and those behind pull at it with up to 10/6 of what holds it.
-STEPS, LAST_STEPS = weights(4, 0.2, 8 / 3), weights(12, 0.1, 8 / 3)
+STEPS, LAST_STEPS = weights(5, 0.1, 8 / 3), weights(16, 0.05, 8 / 3)
 BELOW = 3.0
 MEDIAN_OF_NORMAL, FEWEST = 0.6745, 10
 FAR_LAG = 3
