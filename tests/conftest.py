@@ -6,9 +6,13 @@ import os
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
 
 from scenarios.spec import Scenario
 
+# How long a case takes is the machine's affair, not the code's.
+settings.register_profile("unhurried", deadline=None)
+settings.load_profile("unhurried")
 ROOT = Path(__file__).parents[1]
 
 
