@@ -37,6 +37,14 @@ def test_agrees_with_the_peers(path: Path, method: str) -> None:
     assert np.mean((a | b)[ours]) >= 0.98
 
 
+@pytest.mark.xfail(reason="open: 0.978 to 0.992; the rest is hedges and verges that the peer leaves out")
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("path", FRAMES, ids=[p.stem for p in FRAMES])
+def test_calls_nothing_ground_that_patchwork_does_not(path: Path, method: str) -> None:
+    points, a, _ = peers(path)
+    assert np.mean(a[segment_ground(points, method).is_ground]) >= 0.99
+
+
 def tilted(points: np.ndarray, roll: bool) -> np.ndarray:
     c, s = np.cos(np.radians(15)), np.sin(np.radians(15))
     R = np.array([[1, 0, 0], [0, c, -s], [0, s, c]] if roll else [[c, 0, s], [0, 1, 0], [-s, 0, c]])

@@ -116,6 +116,16 @@ def test_turning_the_cloud_turns_the_ground(scene: Make, degrees: int) -> None:
         assert np.quantile(np.abs(one.height - two.height)[near], 0.99) < height
 
 
+@pytest.mark.xfail(reason="open: 5 to 18 mm by segments that are no whole lines of the sheet")
+@pytest.mark.parametrize("degrees", [2, 46])
+def test_turning_by_segments_keeps_heights_to_3_mm(scene: Make, degrees: int) -> None:
+    points = scene("E", 0.1, seed=16, columns=521).points.astype(float)
+    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    turned = points @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
+    apart = np.abs(segment_ground(points).height - segment_ground(turned).height)
+    assert np.quantile(apart[np.hypot(*points[:, :2].T) < 50], 0.99) < 3e-3
+
+
 def test_same_bytes_every_time(scene: Make) -> None:
     points = scene("E", 0.1, seed=17, columns=521).points
     segmenter = GroundSegmenter()
