@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 def segment(
     cloud: Annotated[Path, typer.Argument(metavar="FILE.bin", help="float32 x, y, z, intensity (KITTI).")],
     out: Annotated[Path, typer.Option("--out", metavar="FILE.label", help="Where the labels go.")],
-    method: Annotated[str, typer.Option("--method", help="Ground method.")] = "default",
+    method: Annotated[str | None, typer.Option("--method", help="Ground method.")] = None,
     picture: o.Picture = None,
     force: o.Force = False,
 ) -> None:
@@ -43,7 +43,7 @@ def segment(
         if path is not None:
             refuse_existing(path, force)
     read = clouds.read_bin(cloud)
-    config = DatmoConfig().with_ground(method)
+    config = DatmoConfig() if method is None else DatmoConfig().with_ground(method)
     keep = refine(read.scan, config.refine)
     ground = segment_ground(read.scan.points, config=config.ground, keep=keep)
     label = clouds.labels(ground.is_ground, read.kept)

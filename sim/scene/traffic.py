@@ -166,8 +166,8 @@ def goes_on(lane: Any, onward: Any) -> bool:
 
 def _open(lane: Any, others: F64, start: float, end: float) -> bool:
     """Whether a lane is straight and no other lies on it between two arc lengths, as parking rows do."""
-    if type(lane) is not StraightLane or not len(others):
-        return type(lane) is StraightLane
+    if type(lane) is not StraightLane:
+        return False
     along, aside = (others - lane.start) @ lane.direction, (others - lane.start) @ lane.direction_lateral
     return not ((along > start) & (along < end) & (np.abs(aside) < NEAR)).any()
 
@@ -178,10 +178,11 @@ def extend(network: RoadNetwork) -> dict[Key, Lane]:
     joints = [(a, b) for a in lanes for b in lanes if a != b and goes_on(lanes[a], lanes[b])]
     led_to, leading = {b for _, b in joints}, {a for a, _ in joints}
     listed: dict[Key, tuple[bool, bool, float]] = {}
-    drawn = {key: [lane.position(s, 0) for s in np.arange(0.0, lane.length)] for key, lane in lanes.items()}
-    for key, lane in lanes.items():
+    drawn = [np.array([lane.position(s, 0) for s in np.arange(0.0, lane.length)]) for lane in lanes.values()]
+    points, owner = np.concatenate(drawn), np.repeat(np.arange(len(drawn)), [len(part) for part in drawn])
+    for i, (key, lane) in enumerate(lanes.items()):
         entry, leaving = key not in led_to, key not in leading
-        others = np.array([p for other in drawn if other != key for p in drawn[other]])
+        others = points[owner != i]
         before = EXTEND * (entry and _open(lane, others, -EXTEND, -2 * NEAR))
         after = EXTEND * (leaving and _open(lane, others, lane.length + 2 * NEAR, lane.length + EXTEND))
         listed[key] = entry, leaving, after

@@ -56,13 +56,17 @@ def test_one_digest_in_both_vector_environments(tiny: Scenario) -> None:
     def make() -> gym.Env:
         return gym.make("sim:datmo/Lidar-v0", scenario=tiny)
 
-    found = []
+    found, ranges = [], []
     for vector in (SyncVectorEnv([make, make]), AsyncVectorEnv([make, make], context="spawn")):
-        infos = [vector.reset(seed=[3, 4])[1]]
+        obs, info = vector.reset(seed=[3, 4])
+        ranges.append(obs["range"].copy())
+        infos = [info]
         infos += [vector.step(np.zeros(2, np.int64))[4] for _ in range(SCANS - 1)]
         vector.close()
         found.append([digest((i["scan"][e], i["truth"][e]) for i in infos) for e in range(2)])
     assert found[0] == found[1] == [play(tiny, 3), play(tiny, 4)]
+    np.testing.assert_array_equal(ranges[0], ranges[1])
+    assert not np.array_equal(ranges[0][0], ranges[0][1])
 
 
 def test_the_digest_is_sha256_of_names_types_shapes_and_bytes() -> None:
