@@ -33,7 +33,8 @@ class Point:
 
     Attributes:
         actors: in range. bare_ms, sweep_ms: [ms]. ratio: median of the rounds' ratios.
-        low, high: quartiles of the ratio.
+        low, high: quartiles of the ratio. best: of the fastest sweep to the fastest bare cast, which holds
+        also where others take the processors away.
         caught: rays that would hit an actor.
         stages: of the sweep [ms].
     """
@@ -44,6 +45,7 @@ class Point:
     ratio: float
     low: float
     high: float
+    best: float
     caught: int
     stages: dict[str, float]
 
@@ -140,4 +142,6 @@ def _point(actors: int, times: F64, caught: int, stages: F64) -> Point:
     low, middle, high = np.percentile(ratio, [25, 50, 75])
     bare, sweep = np.median(times, axis=0)
     parts = {name: float(ms) for name, ms in zip(STAGES, np.median(stages, axis=0), strict=True)}
-    return Point(actors, float(bare), float(sweep), float(middle), float(low), float(high), caught, parts)
+    best = float(times[:, 1].min() / times[:, 0].min())
+    quartiles = float(middle), float(low), float(high)
+    return Point(actors, float(bare), float(sweep), *quartiles, best, caught, parts)

@@ -24,11 +24,12 @@ def table(points: Sequence[Point]) -> Table:
     """A row for each number of actors; the stages of the sweep beside it."""
     made = Table(box=None, header_style="bold", pad_edge=False)
     stages = list(points[0].stages)
-    heads = ["actors", "rays caught", "bare, ms", "sweep, ms", "ratio", "quartiles"]
+    heads = ["actors", "rays caught", "bare, ms", "sweep, ms", "ratio", "quartiles", "of the fastest"]
     for name in heads + [f"{stage}, ms" for stage in stages]:
         made.add_column(name, justify="right")
     for p in points:
-        times = [f"{p.bare_ms:.1f}", f"{p.sweep_ms:.1f}", f"{p.ratio:.2f}", f"{p.low:.2f}-{p.high:.2f}"]
+        ratios = [f"{p.ratio:.2f}", f"{p.low:.2f}-{p.high:.2f}", f"{p.best:.2f}"]
+        times = [f"{p.bare_ms:.1f}", f"{p.sweep_ms:.1f}", *ratios]
         made.add_row(str(p.actors), str(p.caught), *times, *(f"{p.stages[s]:.1f}" for s in stages))
     return made
 

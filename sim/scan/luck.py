@@ -47,25 +47,33 @@ def _quantile(p: float) -> float:
 
 
 @njit(cache=True, nogil=True)
+def uniform_number(key: np.uint64, n: int) -> np.float32:
+    """Number n of a stream, uniform in [0, 1): a multiple of 2^-24."""
+    return np.float32(_word(key, n) >> np.uint64(40)) * UNIT
+
+
+@njit(cache=True, nogil=True)
+def normal_number(key: np.uint64, n: int) -> np.float32:
+    """Number n of a stream, standard normal: the quantile at the middle of one of 2^32 equal steps."""
+    return np.float32(_quantile((np.float64(_word(key, n) >> np.uint64(32)) + 0.5) * 2.0**-32))
+
+
+@njit(cache=True, nogil=True)
 def _uniforms(key: np.uint64, start: int, out: F32) -> None:
-    """Uniform numbers in [0, 1), multiples of 2^-24, for counters from `start` on."""
     for i in range(len(out)):
-        out[i] = np.float32(_word(key, start + i) >> np.uint64(40)) * UNIT
+        out[i] = uniform_number(key, start + i)
 
 
 @njit(cache=True, nogil=True)
 def _uniforms_at(key: np.uint64, counters: I64, out: F32) -> None:
-    """As `_uniforms`, for some counters."""
     for i in range(len(out)):
-        out[i] = np.float32(_word(key, counters[i]) >> np.uint64(40)) * UNIT
+        out[i] = uniform_number(key, counters[i])
 
 
 @njit(cache=True, nogil=True)
 def _normals(key: np.uint64, start: int, out: F32) -> None:
-    """Standard normal numbers, by the quantile at the middle of one of 2^32 equal steps."""
     for i in range(len(out)):
-        step = np.float64(_word(key, start + i) >> np.uint64(32))
-        out[i] = np.float32(_quantile((step + 0.5) * 2.0**-32))
+        out[i] = normal_number(key, start + i)
 
 
 class Luck:
@@ -87,19 +95,20 @@ class Luck:
     def uniform_at(self, stream: int, rays: I64) -> F32:
         """What `uniform` gives to some rays (n,)."""
         out = np.empty(len(rays), np.float32)
-        _uniforms_at(self._key(stream), rays, out)
+        _uniforms_at(self.key(stream), rays, out)
         return out
 
     def normal(self, stream: int, m: int) -> F32:
         """(m,) of mean 0 and variance 1."""
         return self._draw(_normals, stream, m)
 
-    def _key(self, stream: int) -> np.uint64:
+    def key(self, stream: int) -> np.uint64:
+        """For kernels that draw `uniform_number` or `normal_number` themselves, of the rays that need one."""
         child = np.random.SeedSequence(self._seed.entropy, spawn_key=(*self._seed.spawn_key, stream))
         return np.uint64(child.generate_state(1, np.uint64)[0])
 
     def _draw(self, kernel: object, stream: int, m: int) -> F32:
-        key = self._key(stream)
+        key = self.key(stream)
         out = np.empty(m, np.float32)
         spread(lambda rows: kernel(key, rows.start, out[rows]), blocks(m, 8))  # type: ignore[operator]
         return out

@@ -10,7 +10,7 @@ from numba import njit
 from datmo.arrays import F32, I32, U8, Bool
 from scenarios.spec import Noise
 from sim.scan.caster import Hits
-from sim.scan.luck import Luck
+from sim.scan.luck import Luck, normal_number, uniform_number
 from sim.scan.pool import blocks, spread
 from sim.scan.surface import Surfaces
 
@@ -76,37 +76,40 @@ class Lasers:
 def _report(
     rays: tuple[int, int],
     met: tuple[F32, F32, F32],
-    chance: tuple[F32, F32, F32, F32, F32],
+    keys: tuple[np.uint64, np.uint64, np.uint64, np.uint64, np.uint64],
     noise: tuple[float, float, bool, bool],
     air: tuple[float, float, float],
     lasers: tuple[F32, F32],
     out: tuple[F32, F32, Bool, I32],
 ) -> None:
     """Fill distance, intensity, hit and source of rays start..stop; see `measure`."""
-    (true, reflectance, level), (normal, dropped, grazed, zero, scatter) = met, chance
+    (true, reflectance, level), (normal, dropped, grazed, zero, scatter) = met, keys
     (range_std, drop_out, grazing, speckle), (alpha, nearest, farthest), (gain, sharp) = noise, air, lasers
     columns = len(true) // len(gain)
     for r in range(rays[0], rays[1]):
         out[0][r], out[1][r], out[2][r], out[3][r] = 0.0, 0.0, False, r
         R = float(true[r])
-        if not nearest <= R or farthest < R or dropped[r] < drop_out:
+        if not nearest <= R or farthest < R or uniform_number(dropped, r) < drop_out:
             continue
         power = max(float(reflectance[r]), DARKEST) / (R * R)
         if alpha > 0.0:
             power *= np.exp(-2 * alpha * R)
-        distance = R + range_std * np.sqrt(1 + WEAK / max(power, FAINTEST)) * normal[r]
+        distance = R + range_std * np.sqrt(1 + WEAK / max(power, FAINTEST)) * normal_number(normal, r)
         if distance < nearest or distance > farthest:
             continue
         blur = BLUR * (1 / R - sharp[r // columns]) if sharp[r // columns] > 0 else 0.0
         seen = power / (1 + blur * blur)
-        if grazing and seen < SURE * FAINTEST and grazed[r] * (1 + (FAINTEST / seen) ** FADE) >= 1:
-            continue
+        if grazing and seen < SURE * FAINTEST:
+            odds = 1 + (FAINTEST / seen) ** FADE
+            if uniform_number(grazed, r) * odds >= 1:
+                continue
         out[0][r], out[2][r] = distance, True
         mean = float(level[r]) * gain[r // columns]
         if speckle:
             q = (R / DARK) * (R / DARK)
             q *= q * (R / DARK)
-            mean = 0.0 if zero[r] < DIM + (1 - DIM) * q / (1 + q) else mean + SCATTER * scatter[r]
+            dark = uniform_number(zero, r) < DIM + (1 - DIM) * q / (1 + q)
+            mean = 0.0 if dark else mean + SCATTER * normal_number(scatter, r)
         out[1][r] = np.round(min(max(mean, 0.0), 1.0) / STEP) * STEP
 
 
@@ -148,14 +151,14 @@ def measure(
         lasers: what differs from laser to laser. luck: of this frame.
     """
     m = len(hits.distance)
-    dropped, grazed, zero = (luck.uniform(stream, m) for stream in (DROP_OUT, GRAZING, ZERO))
-    chance = luck.normal(RANGE, m), dropped, grazed, zero, luck.normal(SPECKLE, m)
+    normal, dropped, grazed, zero, scatter = map(luck.key, (RANGE, DROP_OUT, GRAZING, ZERO, SPECKLE))
+    keys = normal, dropped, grazed, zero, scatter
     switches = noise.range_std, noise.drop_out, noise.grazing, noise.intensity
     seen, each = (hits.distance, met.reflectance, met.level), (lasers.gain, lasers.sharp)
     out = np.empty(m, np.float32), np.empty(m, np.float32), np.empty(m, np.bool_), np.empty(m, np.int32)
 
     def report(rays: slice) -> None:
-        _report((rays.start, rays.stop), seen, chance, switches, (alpha, *limits), each, out)
+        _report((rays.start, rays.stop), seen, keys, switches, (alpha, *limits), each, out)
 
     spread(report, blocks(m))
     distance, intensity, hit, source = out

@@ -37,9 +37,20 @@ def test_agrees_with_the_peers(path: Path, method: str) -> None:
     assert np.mean((a | b)[ours]) >= 0.98
 
 
-@pytest.mark.xfail(reason="open: 0.978 to 0.992; the rest is hedges and verges that the peer leaves out")
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("path", FRAMES, ids=[p.stem for p in FRAMES])
+SHORT = {("000000", "default"), ("000000", "zli"), ("000002", "zli")} | {("000001", m) for m in METHODS}
+OPEN = pytest.mark.xfail(
+    reason="open: 0.979 to 0.9896; the rest is hedges and verges that the peer leaves out"
+)
+
+
+@pytest.mark.parametrize(
+    ("path", "method"),
+    [
+        pytest.param(p, m, id=f"{p.stem}-{m}", marks=[OPEN] if (p.stem, m) in SHORT else [])
+        for p in FRAMES
+        for m in METHODS
+    ],
+)
 def test_calls_nothing_ground_that_patchwork_does_not(path: Path, method: str) -> None:
     points, a, _ = peers(path)
     assert np.mean(a[segment_ground(points, method).is_ground]) >= 0.99
