@@ -39,7 +39,7 @@ print(digest((i["scan"], i["truth"]) for i in infos))
 """
 
 
-@pytest.mark.parametrize("processors", ["one", "all"])
+@pytest.mark.parametrize("processors", ["one", pytest.param("all", marks=pytest.mark.long)])
 def test_one_digest_in_a_fresh_process_whatever_its_threads(tiny: Scenario, processors: str) -> None:
     run = [sys.executable, "-W", "error", "-c", PROGRAM, tiny.model_dump_json(), processors]
     fresh = subprocess.run(run, check=True, capture_output=True, text=True, env={**os.environ})

@@ -18,6 +18,7 @@ def test_checker_passes_with_rendering(tiny: Scenario) -> None:
     env.close()
 
 
+@pytest.mark.long  # as the plain install of `test_packaging`, warnings being errors
 def test_the_module_id_needs_no_import_of_ours() -> None:
     import subprocess
     import sys

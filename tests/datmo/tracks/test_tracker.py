@@ -223,7 +223,7 @@ def test_a_thousand_boxes_at_once():
     assert tracks.confirmed().sum() > 300
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=4, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_random_scans_with_gaps_stay_finite(seed):
     """Hundreds of scans a draw: anything anywhere, steps from a millisecond to five seconds."""

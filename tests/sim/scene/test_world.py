@@ -16,7 +16,7 @@ from sim.scene.motion import Poses
 from sim.scene.world import World, around, clip
 
 ROUGH = load("rough-crossing", {"terrain.cell": "2.0"})
-FEW = 4
+FEW = 2
 SEEDS = tuple(pytest.param(seed, marks=[pytest.mark.long] * (seed >= FEW)) for seed in range(20))
 
 

@@ -81,6 +81,7 @@ def test_a_body_varies_alike_in_all_its_forms():
     assert set(map(float, forms[0].reflectivity)) == set(map(float, forms[1].reflectivity))
 
 
+@pytest.mark.long  # the digests of fresh processes hold bodies too
 def test_another_process_makes_the_same_bytes():
     code = (
         "import hashlib; from sim.scene.assets import asset; "

@@ -149,7 +149,7 @@ def test_layers_add_up_each_as_if_alone():
     assert np.abs(whole - alone).max() < 1e-5
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=4, deadline=None)
 @given(order=st.permutations(range(len(MANY))))
 def test_their_order_is_of_no_account(order):
     bare = {"roads": ROADS, "area": (-30, -30, 30, 30), "cell": 0.3, "roughness": "C"}
