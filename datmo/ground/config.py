@@ -66,7 +66,7 @@ class GroundConfig(BaseModel):
     learn_first: int = Field(20, ge=1, le=500, description="steps of L-BFGS in the first frame")
     learn_next: int = Field(4, ge=1, le=500, description="steps of L-BFGS in a frame that follows")
     drift: float = Field(0.002, ge=0, description="least std gained per metre from what was seen [m/m]")
-    most_std: float = Field(3.0, gt=0, description="largest std from that [m]")
+    most_std: float = Field(5.0, gt=0, description="largest std from that [m]")
 
     seed_height: float = Field(0.3, gt=0, description="T_s, seeds lie this near the expected ground [m]")
     seed_radius: float = Field(50.0, gt=0, description="seeds lie within this range [m]")

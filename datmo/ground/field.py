@@ -32,8 +32,8 @@ PULL = 0.04  # how far a cell's mean may be off, as a share of c times the cell'
 # sqrt(c / Σ 1/d), by range [m]: fitted to the true heights of simulated ground of classes A to G. They grow
 # with range, since grazing rays meet the crests only.
 RANGES = (5.0, 15.0, 25.0, 35.0, 45.0)
-SEEN_STD = (0.45, 0.65, 0.85, 1.15, 2.0)
-BETWEEN_STD = (1.2, 1.5, 1.5, 1.9, 2.2)
+SEEN_STD = (0.4, 0.7, 1.0, 1.4, 4.2)
+BETWEEN_STD = (1.2, 1.5, 1.5, 2.2, 5.0)
 
 
 @numba.njit(cache=True, nogil=True)

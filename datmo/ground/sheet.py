@@ -24,7 +24,7 @@ LATER_SCALES = np.array([2.0, 1.0])
 STEPS, LAST_STEPS = weights(5, 0.1, 8 / 3), weights(16, 0.05, 8 / 3)
 BELOW = 3.0
 MEDIAN_OF_NORMAL, FEWEST = 0.6745, 10
-FAR_LAG = 3
+LEAN_FROM, LEAN_QUANTILE = 20.0, 0.9  # [m]
 
 Places = tuple[I64, F64, I64, F64]
 
@@ -133,11 +133,11 @@ def settle(
 
 
 def learned_bend(sheet: Sheet, seen: Bool, radius: float) -> tuple[float, float]:
-    """How the sheet bends where it was seen: robust std of its change of slope from node to node [m/m],
-    and of its curvature over far nodes [1/m].
+    """How the sheet bends where it was seen: robust std of its change of slope from node to node [m/m], and
+    how far the ground leans away from its plane from 20 m on, as a slope from the sensor [m/m].
 
-    The height at d from what is seen strays about as the first times d plus half the second times d². 0
-    where fewer than ten places tell.
+    The first tells how rough the ground is, the second how hilly (the 90 % quantile, since one flank may be
+    even). 0 where fewer than ten places tell.
 
     Args:
         seen: (M, N) cells of the grid with ground. radius: places farther than this do not count [m].
@@ -147,15 +147,13 @@ def learned_bend(sheet: Sheet, seen: Bool, radius: float) -> tuple[float, float]
     padded = np.zeros((lattice.lines * THIRD, len(lattice.radii) * THIRD), bool)
     padded[:M, :N] = seen
     near = lattice.radii < radius
-    lines = padded[0::THIRD] | padded[1::THIRD] | padded[2::THIRD]
-    nodes = (lines[:, 0::THIRD] | lines[:, 1::THIRD] | lines[:, 2::THIRD])[:, near]
+    nodes = padded.reshape(lattice.lines, THIRD, -1, THIRD).any((1, 3))[:, near]
     r, f = lattice.radii[near], sheet.f[:, near]
+    slope, known = np.diff(f) / np.diff(r), nodes[:, 2:] & nodes[:, 1:-1] & nodes[:, :-2]
+    turn = _quantile(np.abs(np.diff(slope))[known], 0.5) / MEDIAN_OF_NORMAL
+    far = r >= LEAN_FROM
+    return turn, _quantile((np.abs(f[:, far]) / r[far])[nodes[:, far]], LEAN_QUANTILE)
 
-    def spread(lag: int, power: int) -> float:
-        known = nodes[:, 2 * lag :] & nodes[:, lag:-lag] & nodes[:, : -2 * lag]
-        slope = (f[:, lag:] - f[:, :-lag]) / (r[lag:] - r[:-lag])
-        h = (r[2 * lag :] - r[: -2 * lag]) / 2
-        told = (np.abs(slope[:, lag:] - slope[:, :-lag]) / h**power)[known]
-        return float(np.median(told) / MEDIAN_OF_NORMAL) if len(told) >= FEWEST else 0.0
 
-    return spread(1, 0), spread(FAR_LAG, 1)
+def _quantile(values: F64, share: float) -> float:
+    return float(np.quantile(values, share)) if len(values) >= FEWEST else 0.0

@@ -18,6 +18,7 @@ PULSE = 0.75
 """Half the length of a 5 ns pulse (HDL-64E manual): echoes nearer to each other come back as one [m]."""
 OFF = 0.05
 """A point farther than this from both surfaces lies on neither [m]: five times the noise and more."""
+CLOSEST = 1e-3  # [m]
 SIDES = ((0, 1), (0, -1), (1, 0), (-1, 0))
 """Neighbours in the range image: ring, column."""
 EDGE, SHARE = 10, 11
@@ -59,6 +60,13 @@ def _blend(gap: float, mine: float, other: float) -> float:
 
 
 @njit(cache=True, nogil=True)
+def _power(reflectance: float, distance: float) -> float:
+    """What comes back [1/m²]."""
+    d = np.float32(max(distance, CLOSEST))
+    return float(reflectance / (d * d))
+
+
+@njit(cache=True, nogil=True)
 def _mix(
     rays: I64,
     edge: tuple[Bool, Bool],
@@ -70,7 +78,7 @@ def _mix(
     out: tuple[F32, U8, I32],
 ) -> None:
     """Move the returns of some rays, see `mix_edges`."""
-    (true, power), (nearest, code), C = seen, how, edge[0].shape[1]
+    (true, reflectance), (nearest, code), C = seen, how, edge[0].shape[1]
     for a in range(len(rays)):
         r = rays[a]
         ring = r // C
@@ -80,7 +88,8 @@ def _mix(
         if k < 0 or not nearest <= true[n] < np.inf:
             continue
         gap, share = float(true[n]) - float(true[r]), 0.5 * float(chance[1][a])
-        moved = _blend(gap, (1 - share) * power[r], share * power[n])
+        mine, other = _power(reflectance[r], true[r]), _power(reflectance[n], true[n])
+        moved = _blend(gap, (1 - share) * mine, share * other)
         out[0][r] += moved
         if abs(gap - moved) < abs(moved):
             out[2][r] = n
@@ -113,11 +122,10 @@ def mix_edges(
     step, L = 2 * np.pi / pattern.columns, len(pattern.elevation)
     across = np.minimum(divergence / 2 / (step * np.cos(pattern.elevation)), 0.5)
     up = np.minimum(divergence / 2 / np.maximum(np.abs(np.diff(pattern.elevation)), 1e-6), 0.5)
-    power = met.reflectance / np.maximum(hits.distance, np.float32(1e-3)) ** 2
     lag = shifts(pattern)
     edge = jumps(hits.distance.reshape(L, -1), lag)
     rays = np.flatnonzero(beside(edge, lag).ravel() & returns.hit)
     chance = luck.uniform_at(EDGE, rays), luck.uniform_at(SHARE, rays)
     odds, how = (across, np.append(up, 0.5)), (nearest, int(FalseReturn.MIXED_EDGE))
     out = returns.distance, returns.false, returns.source
-    _mix(rays, edge, lag, (hits.distance, power), odds, chance, how, out)
+    _mix(rays, edge, lag, (hits.distance, met.reflectance), odds, chance, how, out)

@@ -7,7 +7,7 @@ from numba import njit
 
 from datmo.arrays import F32, I32, Bool
 from sim.scan.pattern import Pattern
-from sim.scan.pool import spread
+from sim.scan.pool import groups, spread
 
 JUMP, BEND = 0.1, 0.5
 """An edge steps this much [m], and this share of the steeper slope, out of the slopes beside it: so much
@@ -49,6 +49,21 @@ def _jumps(gap: F32, before: F32, behind: F32, shift: tuple[int, int], out: Bool
         out[c] = gap[c] > max(one, other) + slack or gap[c] < min(one, other) - slack
 
 
+@njit(cache=True, nogil=True)
+def _edges(start: int, stop: int, distance: F32, lag: I32, edge: Bool) -> None:
+    """Fill both kinds of edges (2, L, C) in rows start..stop, see `jumps`."""
+    L, C = distance.shape
+    across, down = np.empty(C, np.float32), np.zeros((stop - start + 2, C), np.float32)
+    for i in range(max(start - 1, 0), min(stop + 1, L - 1)):  # a row of no step where there is none
+        _steps(distance[i], distance[i + 1], lag[i + 1] - lag[i], down[i - start + 1])
+    for i in range(start, stop):
+        _steps(distance[i], distance[i], 1, across)
+        _jumps(across, across, across, (-1, 1), edge[0, i])
+        if i + 1 < L:
+            shift, row = (lag[max(i - 1, 0)] - lag[i], lag[i + 1] - lag[i]), i - start
+            _jumps(down[row + 1], down[row], down[row + 2], shift, edge[1, i])
+
+
 def jumps(distance: F32, lag: I32) -> tuple[Bool, Bool]:
     """Edges of a range image (L, C) [m], infinite where a ray met nothing.
 
@@ -59,26 +74,8 @@ def jumps(distance: F32, lag: I32) -> tuple[Bool, Bool]:
         (L, C) each: an edge before the next column of the ring; before the ray of the next ring that
         looks the same way.
     """
-    L, C = distance.shape
-    across, down = np.empty((L, C), np.float32), np.zeros((L + 2, C), np.float32)  # rows of no step about
-    edge = np.zeros((2, L, C), np.bool_)
-    starts = range(0, L, RINGS)
-
-    def step(start: int) -> None:
-        for i in range(start, min(start + RINGS, L)):
-            _steps(distance[i], distance[i], 1, across[i])
-            if i + 1 < L:
-                _steps(distance[i], distance[i + 1], int(lag[i + 1] - lag[i]), down[i + 1])
-
-    def compare(start: int) -> None:
-        for i in range(start, min(start + RINGS, L)):
-            _jumps(across[i], across[i], across[i], (-1, 1), edge[0, i])
-            if i + 1 < L:
-                shift = int(lag[max(i - 1, 0)] - lag[i]), int(lag[i + 1] - lag[i])
-                _jumps(down[i + 1], down[i], down[i + 2], shift, edge[1, i])
-
-    spread(step, starts)
-    spread(compare, starts)
+    edge = np.zeros((2, *distance.shape), np.bool_)
+    spread(lambda s: _edges(s.start, s.stop, distance, lag, edge), groups(len(distance), RINGS))
     return edge[0], edge[1]
 
 
