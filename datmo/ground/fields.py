@@ -14,7 +14,7 @@ import numpy as np
 
 from datmo.arrays import F64, I64
 from datmo.ground import latent
-from datmo.ground.threads import over_rows
+from datmo.threads import over_rows
 
 Bound = tuple[float, float]
 LATENT_BOUNDS: dict[str, Bound] = {"f": (0.02, 3.0), "l": (1.0, 200.0), "n": (0.02, 2.0)}

@@ -11,7 +11,7 @@ from datmo.arrays import F64
 from datmo.ground.fields import DELTA_BOUND, Bound, Field, Packed
 from datmo.ground.lbfgs import minimise
 from datmo.ground.likelihood import evidence
-from datmo.ground.threads import over_rows
+from datmo.threads import over_rows
 
 SIGNAL_BOUND: Bound = (0.005, 3.0)
 NOISE_BOUND: Bound = (0.001, 1.0)

@@ -9,7 +9,7 @@ import numba
 import numpy as np
 
 from datmo.arrays import F32, F64, I32, I64, Bool
-from datmo.ground.threads import blocks, each, over_rows
+from datmo.threads import blocks, over_rows, spread
 
 OUTSIDE = -1
 TURN = 2 * np.pi
@@ -261,10 +261,14 @@ class Located:
     def candidates(self, multipath: float) -> Candidates:
         """The ground candidates of all cells, see `_merge`."""
         M, N = self.grid.shape
-        edges = blocks(len(self.points), 2)
-        rows = np.empty((len(edges), 2, M * N), np.int32)
-        heights = np.empty((len(edges), 3, M * N), np.float32)
-        each(lambda k: _lowest(self.points, self.cell, *edges[k], *rows[k], *heights[k]), range(len(edges)))
+        halves = blocks(len(self.points), 2)
+        rows = np.empty((len(halves), 2, M * N), np.int32)
+        heights = np.empty((len(halves), 3, M * N), np.float32)
+
+        def lowest(k: int) -> None:
+            _lowest(self.points, self.cell, halves[k].start, halves[k].stop, *rows[k], *heights[k])
+
+        spread(lowest, range(len(halves)))
         index, extent = _merge(self.points, rows, heights, multipath)
         columns = np.array(self.grid.middle)
         _place(self.points, self.azimuth, self.radius, index, columns)

@@ -13,7 +13,7 @@ from datmo.ground.gp import fit_segments, grow_segments
 from datmo.ground.grid import PolarGrid
 from datmo.ground.lines import LineRules, as_array
 from datmo.ground.regression import Cells, Heights, Learned, Regression
-from datmo.ground.threads import over_rows
+from datmo.threads import over_rows
 
 ABOVE = 1.0
 DOUBT = 20.0

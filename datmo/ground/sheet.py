@@ -147,7 +147,7 @@ def learned_bend(sheet: Sheet, seen: Bool, radius: float) -> tuple[float, float]
     padded = np.zeros((lattice.lines * THIRD, len(lattice.radii) * THIRD), bool)
     padded[:M, :N] = seen
     near = lattice.radii < radius
-    nodes = padded.reshape(lattice.lines, THIRD, -1, THIRD).any((1, 3))[:, near]
+    nodes = np.asarray(padded.reshape(lattice.lines, THIRD, -1, THIRD).any((1, 3)))[:, near]
     r, f = lattice.radii[near], sheet.f[:, near]
     slope, known = np.diff(f) / np.diff(r), nodes[:, 2:] & nodes[:, 1:-1] & nodes[:, :-2]
     turn = _quantile(np.abs(np.diff(slope))[known], 0.5) / MEDIAN_OF_NORMAL

@@ -9,9 +9,9 @@ import numpy as np
 
 from datmo.arrays import F32, F64, I32, Bool
 from datmo.ground.grid import Located
-from datmo.ground.threads import over_rows
 from datmo.messages import Surface
 from datmo.messages.base import Message
+from datmo.threads import over_rows
 
 BEYOND = 0.1
 

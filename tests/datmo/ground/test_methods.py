@@ -8,7 +8,8 @@ from typing import Any, get_args
 import numpy as np
 import pytest
 
-from datmo.ground import METHODS, GroundConfig, GroundSegmenter, segment_ground, threads
+from datmo import threads
+from datmo.ground import METHODS, GroundConfig, GroundSegmenter, segment_ground
 from datmo.ground.config import Method
 
 Make = Callable[..., Any]
@@ -78,8 +79,8 @@ def test_threads_do_not_change_the_bytes(
     method: str, sweeps: list[np.ndarray], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with_threads = play(GroundSegmenter(GroundConfig(method=method)), sweeps)
-    monkeypatch.setattr(threads, "each", lambda task, items: [task(i) for i in items])
-    monkeypatch.setattr(threads, "BLOCKS", 7)
+    monkeypatch.setattr(threads, "workers", lambda: 1)
+    monkeypatch.setattr(threads, "ROWS", 7)
     assert play(GroundSegmenter(GroundConfig(method=method)), sweeps) == with_threads
 
 

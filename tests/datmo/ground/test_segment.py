@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
+from datmo import threads
 from datmo.errors import ConfigError, MessageError
-from datmo.ground import METHODS, GroundConfig, GroundSegmenter, segment_ground, threads
+from datmo.ground import METHODS, GroundConfig, GroundSegmenter, segment_ground
 
 Make, Judge = Callable[..., Any], Callable[..., tuple[float, float]]
 
@@ -140,8 +141,8 @@ def test_same_bytes_every_time(scene: Make) -> None:
 def test_threads_do_not_change_the_bytes(scene: Make, monkeypatch: pytest.MonkeyPatch) -> None:
     points = scene("E", 0.1, seed=17, columns=521).points
     with_threads = segment_ground(points)
-    monkeypatch.setattr(threads, "each", lambda task, items: [task(i) for i in items])
-    monkeypatch.setattr(threads, "BLOCKS", 7)
+    monkeypatch.setattr(threads, "workers", lambda: 1)
+    monkeypatch.setattr(threads, "ROWS", 7)
     assert segment_ground(points) == with_threads
 
 
