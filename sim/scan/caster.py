@@ -10,13 +10,13 @@ import numpy as np
 
 from datmo.arrays import F32, F64, I32, Bool
 from datmo.geometry import inverse
+from datmo.threads import blocks, groups, spread
 from sim.scan.bodies import Body, body
 from sim.scan.culling import candidates
 from sim.scan.embree import Mesh
 from sim.scan.merge import NOTHING, TERRAIN, THING, Found, account, contest, describe, nearer
 from sim.scan.motion import SweepMotion, sweep_motion, world_rays
 from sim.scan.pattern import Pattern
-from sim.scan.pool import blocks, groups, spread
 from sim.scene.motion import Poses
 
 GROUP = 4

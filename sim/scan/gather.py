@@ -10,10 +10,10 @@ from numba import njit
 
 from datmo.arrays import F32, F64, I32, I64, U8, Bool
 from datmo.messages import Kind, LostRays
+from datmo.threads import blocks, spread
 from sim.scan.caster import Hits
 from sim.scan.merge import TERRAIN
 from sim.scan.pattern import Pattern
-from sim.scan.pool import blocks, spread
 from sim.scan.returns import Returns
 from sim.scan.surface import Surfaces
 from sim.scene.terrain import Terrain

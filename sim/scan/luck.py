@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 
 from datmo.arrays import F32, I64
-from sim.scan.pool import blocks, spread
+from datmo.threads import blocks, spread
 
 GAMMA = np.uint64(0x9E3779B97F4A7C15)
 UNIT = np.float32(2.0**-24)

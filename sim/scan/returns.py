@@ -8,10 +8,10 @@ import numpy as np
 from numba import njit
 
 from datmo.arrays import F32, I32, U8, Bool
+from datmo.threads import blocks, spread
 from scenarios.spec import Noise
 from sim.scan.caster import Hits
 from sim.scan.luck import Luck, normal_number, uniform_number
-from sim.scan.pool import blocks, spread
 from sim.scan.surface import Surfaces
 
 FAINTEST, FADE = 1.4e-5, 4.5

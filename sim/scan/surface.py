@@ -10,10 +10,10 @@ from numba import njit
 
 from datmo.arrays import F32, I32, I64, U8
 from datmo.messages import VEHICLES, Kind
+from datmo.threads import blocks, spread
 from sim.scan.bodies import Body
 from sim.scan.caster import Hits
 from sim.scan.merge import NOTHING, TERRAIN, THING
-from sim.scan.pool import blocks, spread
 from sim.scan.things import Things
 
 REFLECTIVITY = {Kind.ROAD: 0.1, Kind.SIDEWALK: 0.2, Kind.FIELD: 0.3}

@@ -6,8 +6,8 @@ import numpy as np
 from numba import njit
 
 from datmo.arrays import F32, I32, Bool
+from datmo.threads import groups, spread
 from sim.scan.pattern import Pattern
-from sim.scan.pool import groups, spread
 
 JUMP, BEND = 0.1, 0.5
 """An edge steps this much [m], and this share of the steeper slope, out of the slopes beside it: so much

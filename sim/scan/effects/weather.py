@@ -7,10 +7,10 @@ from numba import njit
 
 from datmo.arrays import F32, F64, U8, Bool
 from datmo.messages import FalseReturn
+from datmo.threads import blocks, spread
 from sim.scan.caster import Hits
 from sim.scan.effects.air import STEP, Air
 from sim.scan.luck import Luck
-from sim.scan.pool import blocks, spread
 from sim.scan.returns import FAINTEST, Returns
 from sim.scan.surface import Surfaces
 

@@ -6,7 +6,6 @@ import pytest
 from datmo.arrays import F64, Array
 from datmo.errors import SimulationError
 from sim.scan.embree import MISS, Mesh
-from sim.scan.pool import blocks, spread
 
 
 def nearest_hit(vertices: F64, triangles: Array, origin: F64, direction: F64) -> float:
@@ -59,8 +58,3 @@ def test_cast_of_no_rays_is_empty() -> None:
 def test_a_broken_mesh_is_refused(vertices: F64, triangles: F64) -> None:
     with pytest.raises(SimulationError, match="triangle"):
         Mesh(np.asarray(vertices, np.float32), np.asarray(triangles, np.int32))
-
-
-def test_blocks_cover_every_ray_once_and_results_keep_their_order() -> None:
-    rays = np.arange(1003)
-    assert np.array_equal(np.concatenate(spread(lambda s: rays[s], blocks(1003))), rays)
