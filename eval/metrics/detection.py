@@ -55,12 +55,12 @@ def match_detections(frame: Frame, truth: Truth, returns: Returns) -> Matched:
     return Matched(actor, (actor < 0) & ~ignored & ~clutter, clutter, valid, found)
 
 
-def box_errors(frame: Frame, truth: Truth, matched: Matched) -> dict[str, list[float]]:
-    """Errors of the matched detections, by name.
+def pair_errors(frame: Frame, truth: Truth, matched: Matched) -> tuple[I64, dict[str, F64]]:
+    """The actors (m,) of the matched detections, and the errors (m,) of those by name.
 
-    center_error: bird's-eye distance of the centres [m]. yaw_error: modulo 180 degrees, vehicles
-    [rad]. iou: rotated, bird's-eye. corner_error: from the true corner nearest to the sensor to
-    the nearest corner of the detection [m].
+    center_error: bird's-eye distance of the centres [m]. yaw_error: modulo 180 degrees, vehicles; NaN for
+    others [rad]. iou: rotated, bird's-eye. corner_error: from the true corner nearest to the sensor to
+    the nearest corner of the detection [m]. length_error: [m].
     """
     d = np.flatnonzero(matched.actor >= 0)
     found, true = frame.boxes.select(d), truth.boxes.select(matched.actor[d])
@@ -71,12 +71,12 @@ def box_errors(frame: Frame, truth: Truth, matched: Matched) -> dict[str, list[f
     corner = b[np.arange(len(d)), nearest]
     shared = np.array([overlap_bev(p, q) for p, q in zip(a, b, strict=True)])
     area = found.size[:, 0] * found.size[:, 1] + true.size[:, 0] * true.size[:, 1]
-    return {
-        "center_error": np.linalg.norm((found.center - true.center)[:, :2], axis=1).tolist(),
-        "yaw_error": np.abs(turn)[is_any(true.kind, VEHICLES)].tolist(),
-        "iou": (shared / (area - shared)).tolist(),
-        "corner_error": np.linalg.norm(a - corner[:, None], axis=2).min(1).tolist(),
-        "length_error": (found.size[:, 0] - true.size[:, 0]).tolist(),
+    return matched.actor[d], {
+        "center_error": np.linalg.norm((found.center - true.center)[:, :2], axis=1),
+        "yaw_error": np.where(is_any(true.kind, VEHICLES), np.abs(turn), np.nan),
+        "iou": shared / (area - shared),
+        "corner_error": np.linalg.norm(a - corner[:, None], axis=2).min(1),
+        "length_error": found.size[:, 0] - true.size[:, 0],
     }
 
 
@@ -103,8 +103,8 @@ class DetectionScores:
         self._near_vehicles += matched.found[near & matched.valid].tolist()
         self._kind += truth.boxes.kind[matched.valid].tolist()
         self._found += matched.found[matched.valid].tolist()
-        for name, values in box_errors(frame, truth, matched).items():
-            self._errors[name] += values
+        for name, values in pair_errors(frame, truth, matched)[1].items():
+            self._errors[name] += values[~np.isnan(values)].tolist()
 
     def join(self, other: DetectionScores) -> None:
         """Take in what another has counted."""

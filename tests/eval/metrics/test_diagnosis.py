@@ -32,7 +32,7 @@ def diagnosed(
         thing=np.where(actor < 0, 7, -1),
     )
     none = np.zeros(0, bool)
-    return diagnose(frame, truth, Matched(none.astype(int), none, none, returns >= 5, np.array(found)))
+    return diagnose(frame, truth, Matched(none.astype(int), none, none, returns >= 5, np.array(found, bool)))
 
 
 def test_a_whole_object_is_neither_split_nor_merged(make: Any) -> None:
