@@ -22,7 +22,7 @@ from datmo.ground.surface import PolarSurface, at_cells, gaps
 from datmo.messages import Ground
 
 # What is unseen strays by DRIFT times the sheet's turn times the distance d to what was seen, and behind a
-# hill by HIDDEN [1/m] times its lean times d²; fitted as in `field`, on other seeds than the tables' [-].
+# hill by HIDDEN [1/m] times its lean times d²; fitted as in `field`.
 DRIFT, HIDDEN = 0.5, 0.7
 BEND_RADIUS = 50.0  # [m]
 NOTHING = 1e6  # m, farther than any grid reaches
