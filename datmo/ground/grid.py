@@ -173,9 +173,11 @@ def _lowest(
             z = points[i, 2]
             if z > high[c]:
                 high[c] = z
-            if z < low[c]:  # the common case of `_insert`
+            if z < low[c]:  # the common cases of `_insert`, whose call costs more than they do
                 second[c], after[c] = first[c], low[c]
                 first[c], low[c] = i, z
+            elif low[c] < z < after[c]:
+                second[c], after[c] = i, z
             elif z <= after[c]:
                 _insert(points, i, c, first, second, low, after)
 

@@ -9,6 +9,7 @@ from datmo.arrays import F64
 
 STEEPEST = 0.6
 BELOW = 0.3
+QUANTILE_SCALES, ROBUST_SCALES = np.geomspace(1.0, 0.05, 7), np.geomspace(0.4, 0.1, 4)
 RIDGE = 1e-3
 
 
@@ -17,7 +18,7 @@ def _solve(xyz: F64, w: F64) -> F64:
     """Weighted least-squares plane (3,), its slopes held by a weak ridge and to `STEEPEST`."""
     xx, yy, n, xy, sx, sy, xz, yz, sz = RIDGE, RIDGE, 1e-9, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(len(xyz)):
-        x, y, z = xyz[i]
+        x, y, z = xyz[i, 0], xyz[i, 1], xyz[i, 2]
         wx, wy, wz = w[i] * x, w[i] * y, w[i] * z
         xx, xy, sx, xz = xx + wx * x, xy + wx * y, sx + wx, xz + wx * z
         yy, sy, yz = yy + wy * y, sy + wy, yz + wy * z
@@ -68,4 +69,4 @@ def robust_plane(xyz: F64, start_height: float) -> F64:
         plane[2] = np.quantile(xyz[:, 2], BELOW)
     if len(xyz) < 3:
         return plane
-    return np.asarray(_settle(xyz, plane, np.geomspace(1.0, 0.05, 7), np.geomspace(0.4, 0.1, 4)))
+    return np.asarray(_settle(xyz, plane, QUANTILE_SCALES, ROBUST_SCALES))

@@ -67,6 +67,8 @@ def _settle(
     last: F64,
 ) -> None:
     M, N = f.shape
+    rows = np.flatnonzero(weight)
+    y, weight, line, s, node, t = y[rows], weight[rows], line[rows], s[rows], node[rows], t[rows]
     normal, w = np.empty((5, N, 1 + M)), np.empty(len(y))
     for k in range(len(first) + len(later)):
         expected = evaluate(f, line, s, node, t)
@@ -125,10 +127,7 @@ def settle(
     scales = (FIRST_SCALES, noise * ROBUST_SCALES) if first else (np.empty(0), noise * LATER_SCALES)
     bands = prior.bands, prior.next, prior.second
     last = STEPS if first else LAST_STEPS
-    rows = np.flatnonzero(weight)
-    line, s, node, t = places
-    at = line[rows], s[rows], node[rows], t[rows]
-    _settle(f, y[rows], weight[rows], *at, *bands, quantile, below, *scales, STEPS, last)
+    _settle(f, y, weight, *places, *bands, quantile, below, *scales, STEPS, last)
     return Sheet(sheet.lattice, f)
 
 

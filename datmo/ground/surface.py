@@ -86,8 +86,9 @@ def over_points(
             q = min(int(np.searchsorted(nodes, r, side="right")) - 1, N)
         t = min((r - nodes[q]) * inverse[q], 1.0)
         s += 0.5  # from the middle of the last segment
-        f = s - int(s)
-        a, b = (int(s) - 1) % M, int(s) % M
+        b = int(s)
+        f = s - b
+        a, b = (b - 1 if b > 0 else M - 1), (b if b < M else 0)
         low = (1 - t) * table[a, q] + t * table[a, q + 1]
         high = (1 - t) * table[b, q] + t * table[b, q + 1]
         height = slope_x * points[i, 0] + slope_y * points[i, 1] + level
@@ -101,10 +102,11 @@ def over_points(
 @numba.njit(cache=True, nogil=True)
 def at_cells(table: F64, nodes: F64, azimuth: F64, radius: F64) -> F64:
     """Bilinear value of table (M, Q) at one place in each cell, azimuths [segments] and radii (M, N) [m]."""
-    out = np.empty_like(radius)
+    out, inverse = np.empty_like(radius), 1 / np.diff(nodes)
     for m in range(len(table)):
         for b in range(radius.shape[1]):
-            q, t = _corner(nodes, radius[m, b])
+            q = b + 1 if radius[m, b] >= nodes[b + 1] else b
+            t = (radius[m, b] - nodes[q]) * inverse[q]
             out[m, b] = _blend(azimuth[m, b] - 0.5, q, t, table)
     return out
 
