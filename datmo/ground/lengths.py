@@ -8,12 +8,13 @@ import numpy as np
 from datmo.arrays import F64, I32, Bool
 from datmo.ground.lines import END, START
 from datmo.ground.lines.incremental import incremental
+from datmo.ground.lines.table import COLUMNS
+from datmo.threads import over_rows
 
 SHORTEST, LONGEST = 1.0, 40.0
 NO_DRAWS = np.empty(0)
 
 
-@numba.njit(cache=True, nogil=True)
 def log_lengths(
     r: F64, z: F64, present: Bool, nodes: F64, rules: F64, default: float
 ) -> tuple[F64, F64, I32]:
@@ -27,9 +28,18 @@ def log_lengths(
     """
     M, N = r.shape
     at, at_nodes = np.full((M, N), np.log(default)), np.full((M, len(nodes)), np.log(default))
-    count, lines = np.zeros(M, np.int32), np.empty((N, 7))
-    ends, logs = np.empty(2 * N), np.empty(2 * N)
-    for m in range(M):
+    count = np.zeros(M, np.int32)
+    over_rows(_log_lengths, (r, z, present, at, at_nodes, count), (nodes, rules))
+    return at, at_nodes, count
+
+
+@numba.njit(cache=True, nogil=True)
+def _log_lengths(
+    r: F64, z: F64, present: Bool, at: F64, at_nodes: F64, count: I32, nodes: F64, rules: F64
+) -> None:
+    N = r.shape[1]
+    lines, ends, logs = np.empty((N, COLUMNS)), np.empty(2 * N), np.empty(2 * N)
+    for m in range(len(r)):
         seen = np.flatnonzero(present[m])
         k = incremental(r[m][seen], z[m][seen], rules, NO_DRAWS, lines)
         count[m] = k
@@ -41,4 +51,3 @@ def log_lengths(
             logs[2 * j] = logs[2 * j + 1] = np.log(length)
         at[m] = np.interp(r[m], ends[: 2 * k], logs[: 2 * k])
         at_nodes[m] = np.interp(nodes, ends[: 2 * k], logs[: 2 * k])
-    return at, at_nodes, count

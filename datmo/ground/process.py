@@ -75,9 +75,10 @@ class Segments(Regression):
 
     def fit(self, cells: Cells, learned: Learned) -> tuple[Heights, Learned]:
         """See `Regression`."""
-        scales = self.scales(cells, learned)
         if self.config.learn:
             scales, learned = self.learn(cells, learned)
+        else:
+            scales = self.scales(cells, learned)
         return self._heights(cells, scales, True), learned
 
     def _heights(self, cells: Cells, scales: Scales, spread: bool) -> Heights:

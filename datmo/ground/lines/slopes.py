@@ -9,6 +9,7 @@ from datmo.arrays import F64, I32, Bool
 from datmo.ground.lines.extract import LineMethod, draw, extractor
 from datmo.ground.lines.incremental import incremental
 from datmo.ground.lines.table import COLUMNS, END, SLOPE, START
+from datmo.threads import over_rows
 
 
 @numba.njit(cache=True, nogil=True)
@@ -25,11 +26,19 @@ def nearest_slope(query: F64, lines: F64, k: int, default: float, out: F64) -> N
 
 @numba.njit(cache=True, nogil=True)
 def _incremental_slopes(
-    r: F64, z: F64, present: Bool, nodes: F64, rules: F64, default: float, none: F64
-) -> tuple[F64, F64, I32]:
-    """All segments in one kernel, for the extractor that the ground runs on."""
+    r: F64,
+    z: F64,
+    present: Bool,
+    at: F64,
+    at_nodes: F64,
+    count: I32,
+    nodes: F64,
+    rules: F64,
+    default: float,
+    none: F64,
+) -> None:
+    """Some segments in one kernel, for the extractor that the ground runs on."""
     M, N = r.shape
-    at, at_nodes, count = np.full((M, N), default), np.empty((M, len(nodes))), np.zeros(M, np.int32)
     rs, zs, lines, slopes = np.empty(N), np.empty(N), np.empty((N, COLUMNS)), np.empty(N)
     for m in range(M):
         n = 0
@@ -45,7 +54,6 @@ def _incremental_slopes(
             if present[m, b]:
                 at[m, b] = slopes[n]
                 n += 1
-    return at, at_nodes, count
 
 
 def segment_slopes(
@@ -74,11 +82,12 @@ def segment_slopes(
         ConfigError: the method is not known.
     """
     find, draws = extractor(method), draw(method, rng)
-    if method == "incremental":
-        slopes: tuple[F64, F64, I32] = _incremental_slopes(r, z, present, nodes, rules, default, draws)
-        return slopes
     M, N = r.shape
     at, at_nodes, count = np.full((M, N), default), np.empty((M, len(nodes))), np.zeros(M, np.int32)
+    if method == "incremental":
+        rows = (r, z, present, at, at_nodes, count)
+        over_rows(_incremental_slopes, rows, (nodes, rules, default, draws))
+        return at, at_nodes, count
     lines = np.empty((N, COLUMNS))
     for m in range(M):
         rs = r[m, present[m]]
