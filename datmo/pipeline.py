@@ -8,6 +8,7 @@ import numpy as np
 
 from datmo.arrays import F64
 from datmo.boxes import fit_boxes
+from datmo.carry import carry
 from datmo.clusters import cluster, merge_clusters
 from datmo.config import DatmoConfig
 from datmo.geometry import transform
@@ -48,8 +49,9 @@ class Datmo:
         height_above = scan.points[:, 2] - ground.height
         elevated = keep & ~ground.is_ground
         clusters = cluster(scan.points, height_above, elevated, self.config.clusters)
-        places = transform(scan.T_world_sensor, scan.points)
-        clusters = merge_clusters(places, clusters, self.tracker.predicted(scan.stamp), self.config.merge)
+        predicted = self.tracker.predicted(scan.stamp)
+        places = carry(transform(scan.T_world_sensor, scan.points), scan, clusters, predicted)
+        clusters = merge_clusters(places, clusters, predicted, self.config.merge)
         clock.lap("clusters")
         boxes, rejected = fit_boxes(
             places, clusters, ground_below(scan, ground), scan.T_world_sensor[:2, 3], self.config.boxes

@@ -5,13 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from datmo.arrays import F64, I64, Array
+from datmo.boxes.complete import complete
 from datmo.boxes.config import BoxConfig
 from datmo.boxes.hull import least_area_angles
 from datmo.boxes.outline import group, outlines
 from datmo.boxes.rectangle import extents, search
-from datmo.boxes.rules import Rejection, apply_rules, guess_kinds
+from datmo.boxes.rules import Rejection, apply_rules
+from datmo.boxes.shape import shapes
+from datmo.boxes.upright import to_axes, upright
 from datmo.errors import MessageError
-from datmo.messages import Boxes, Clusters
+from datmo.messages import Clusters, Detections
 
 
 def fit_boxes(
@@ -20,7 +23,7 @@ def fit_boxes(
     ground_z: Array,
     sensor_xy: Array,
     config: BoxConfig | None = None,
-) -> tuple[Boxes, tuple[Rejection, ...]]:
+) -> tuple[Detections, tuple[Rejection, ...]]:
     """A box around what is seen of each cluster (method.md sections 6 and 7).
 
     The heading comes from the rectangle search over the outline, the extent from all the points,
@@ -47,49 +50,46 @@ def fit_boxes(
     config = config or BoxConfig()
     points, ground = np.asarray(points_world, float), np.asarray(ground_z, float)
     _check(points, clusters, ground)
-    boxes, number = _fit(points, ground, clusters, np.asarray(sensor_xy, float), config)
-    passed, rejections = apply_rules(boxes.size, number, config.filter)
-    return boxes.select(passed), rejections
+    found, number = _fit(points, ground, clusters, np.asarray(sensor_xy, float), config)
+    passed, rejections = apply_rules(found.visible().size, number, config.filter)
+    return found.select(passed), rejections
 
 
 def _fit(
     points: F64, ground: F64, clusters: Clusters, sensor_xy: F64, config: BoxConfig
-) -> tuple[Boxes, I64]:
+) -> tuple[Detections, I64]:
     """The box and the number of points of each cluster, whatever they are."""
     rows, starts = group(clusters.label, clusters.count)
     number = np.diff(starts)
     xy = np.ascontiguousarray(points[rows, :2])
-    angle = _angles(xy, starts, sensor_xy, config)
-    center, length_width, yaw = _rectangles(extents(xy, starts, angle), angle)
+    outline, length = outlines(xy, starts, sensor_xy, config.outline_points, np.deg2rad(config.outline_step))
+    angle = _angles(xy, starts, outline, length, config)
+    extent = extents(xy, starts, angle)
     base, top = _heights(points[rows, 2], ground[rows], starts)
-    size = np.column_stack([length_width, np.maximum(top - base, 0)])
-    boxes = Boxes(
-        center=np.column_stack([center, base + size[:, 2] / 2]),
-        size=size,
-        yaw=yaw,
+    height = np.maximum(top - base, 0)
+    whole = complete(extent, height, to_axes(sensor_xy, angle), config.complete)
+    boxes = upright(extent, whole, angle)
+    center = np.column_stack([boxes.center, base + height / 2])
+    found = Detections(
+        center=center,
+        size=np.column_stack([boxes.size, height]),
+        yaw=boxes.yaw,
         score=(number / (number + config.half_points)).astype(np.float32),
-        kind=guess_kinds(size, config.kinds),
+        kind=whole.kind,
+        cov=boxes.cov,
+        seen=boxes.seen,
+        shape=shapes(outline, length, angle, extent, config.side_tolerance),
+        cluster=np.arange(clusters.count),
     )
-    return boxes, number
+    return found, number
 
 
-def _angles(xy: F64, starts: I64, sensor_xy: F64, config: BoxConfig) -> F64:
+def _angles(xy: F64, starts: I64, outline: F64, length: I64, config: BoxConfig) -> F64:
     """Angle (k,) of each cluster's rectangle [rad, 0 <= angle < pi/2]."""
     if config.criterion == "hull":
         return np.asarray(least_area_angles(xy, starts))
-    outline, length = outlines(xy, starts, sensor_xy, config.outline_points, np.deg2rad(config.outline_step))
     step = np.deg2rad(config.step)
     return search(outline, length, step, config.nearest, config.criterion, config.weights)
-
-
-def _rectangles(extent: F64, angle: F64) -> tuple[F64, F64, F64]:
-    """Centre (k, 2), length and width (k, 2), yaw (k,) in [-pi/2, pi/2) of each rectangle."""
-    x, y = (extent[:, 0] + extent[:, 1]) / 2, (extent[:, 2] + extent[:, 3]) / 2
-    c, s = np.cos(angle), np.sin(angle)
-    center = np.column_stack([c * x - s * y, s * x + c * y])
-    along, across = extent[:, 1] - extent[:, 0], extent[:, 3] - extent[:, 2]
-    yaw = np.where(along >= across, angle, angle - np.pi / 2)
-    return center, np.column_stack([np.maximum(along, across), np.minimum(along, across)]), yaw
 
 
 def _heights(z: F64, ground: F64, starts: I64) -> tuple[F64, F64]:

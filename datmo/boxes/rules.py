@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from datmo.arrays import F64, I64, U8, Bool
-from datmo.boxes.config import FilterConfig, KindRule
-from datmo.messages import Kind
+from datmo.arrays import F64, I64, Bool
+from datmo.boxes.config import FilterConfig
 
 
 @dataclass(frozen=True)
@@ -49,15 +48,6 @@ def apply_rules(size: F64, points: I64, config: FilterConfig) -> tuple[Bool, tup
             rejections.append(Rejection(int(k), rule, float(value[k]), float(limit)))
         broken |= outside
     return ~broken, tuple(sorted(rejections, key=lambda r: r.cluster))
-
-
-def guess_kinds(size: F64, rules: tuple[KindRule, ...]) -> U8:
-    """`Kind` (k,) suggested by length, width and height (k, 3) [m]; UNKNOWN where no rule fits."""
-    kind = np.full(len(size), Kind.UNKNOWN, np.uint8)
-    for rule in reversed(rules):
-        low, high = np.array([rule.length, rule.width, rule.height]).T
-        kind[((size >= low) & (size <= high)).all(1)] = rule.kind
-    return kind
 
 
 def _rules(size: F64, points: I64, config: FilterConfig) -> tuple[tuple[str, F64, tuple[float, float]], ...]:

@@ -13,7 +13,7 @@ from datmo.messages.base import (
 )
 from datmo.messages.frame import Frame
 from datmo.messages.ground import Ground, Plane, Surface
-from datmo.messages.objects import Boxes, Clusters, Tracks
+from datmo.messages.objects import Boxes, Clusters, Detections, Tracks
 from datmo.messages.scan import Scan
 from datmo.messages.sight import Sight
 from datmo.messages.truth import LostRays, Relief, Truth, is_any, visibility
@@ -25,6 +25,7 @@ __all__ = [
     "VEHICLES",
     "Boxes",
     "Clusters",
+    "Detections",
     "FalseReturn",
     "Frame",
     "Ground",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -76,6 +76,55 @@ class Boxes(Message):
         """The boxes of `rows` (indices or a mask), in that order."""
         names = ("center", "size", "yaw", "velocity", "score", "id", "kind")
         return Boxes(**{name: getattr(self, name)[rows] for name in names})
+
+    def visible(self) -> Boxes:
+        """What of the boxes was seen; of those that are no detections, all."""
+        return self
+
+
+@dataclass(frozen=True, eq=False)
+class Detections(Boxes):
+    """Boxes found in one scan: whole ones, and how much of each was seen.
+
+    Attributes:
+        cov: (k, 3, 3) over x, y [m, world] and yaw [rad].
+        seen: (k, 4) from where to where along the length, and along the width, each box was seen, about its
+            centre [m].
+        shape: (k,) `datmo.boxes.Shape` of the outline.
+        cluster: (k,) label of the cluster it was made of, -1 none.
+    """
+
+    cov: F64 = None  # type: ignore[assignment]
+    seen: F64 = None  # type: ignore[assignment]
+    shape: U8 = None  # type: ignore[assignment]
+    cluster: I64 = None  # type: ignore[assignment]
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        k = len(self)
+        self._set("cov", (k, 3, 3), np.float64, np.eye(3))
+        if self.seen is None:
+            object.__setattr__(self, "seen", self.size[:, [0, 0, 1, 1]] / 2 * np.array([-1, 1, -1, 1]))
+        self._set("seen", (k, 4), np.float64)
+        self._set("shape", (k,), np.uint8, 0)
+        self._set("cluster", (k,), np.int64, -1)
+
+    def select(self, rows: Array) -> Detections:
+        """The detections of `rows` (indices or a mask), in that order."""
+        return Detections(**{f.name: getattr(self, f.name)[rows] for f in fields(self)})
+
+    def visible(self) -> Boxes:
+        """The seen parts alone, length >= width, yaw in [-pi/2, pi/2)."""
+        along, across = self.seen[:, 1] - self.seen[:, 0], self.seen[:, 3] - self.seen[:, 2]
+        x, y = (self.seen[:, 0] + self.seen[:, 1]) / 2, (self.seen[:, 2] + self.seen[:, 3]) / 2
+        c, s = np.cos(self.yaw), np.sin(self.yaw)
+        center, size = self.center.copy(), self.size.copy()
+        center[:, 0] += c * x - s * y
+        center[:, 1] += s * x + c * y
+        size[:, 0], size[:, 1] = np.maximum(along, across), np.minimum(along, across)
+        yaw = np.where(along >= across, self.yaw, self.yaw + np.pi / 2)
+        yaw = (yaw + np.pi / 2) % np.pi - np.pi / 2
+        return Boxes(center, size, yaw, self.velocity, self.score, self.id, self.kind)
 
 
 @dataclass(frozen=True, eq=False)

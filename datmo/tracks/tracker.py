@@ -81,7 +81,7 @@ class Tracker:
         self.notes, self.nis = {}, {}
         stamp = float(stamp)
         dt = self._elapsed(stamp)
-        boxes = self._accept(boxes)
+        boxes = self._accept(boxes.visible())
         bank, before = self._bank, self._bank.mu
         mean, P = self._predict(dt)
         visible, empty = self._expect(mean, P, sight)

@@ -11,8 +11,8 @@ from typing import Any
 from datmo.config import DatmoConfig
 from datmo.errors import ConfigError
 from eval.benchmark.detection_table import Goal, goal_table, goals, tables
-from eval.benchmark.ground_table import Rows, markdown
 from eval.benchmark.sightings import Job, Sighting, detect
+from eval.benchmark.table import Rows, markdown
 from eval.facts import hardware, versions
 from eval.output import writing_folder
 from eval.pool import run_all

@@ -9,8 +9,8 @@ from itertools import pairwise
 import numpy as np
 
 from datmo.messages import VEHICLES, Kind, Visibility
-from eval.benchmark.ground_table import Rows, say
 from eval.benchmark.sightings import Sighting
+from eval.benchmark.table import Rows, say
 from eval.metrics.diagnosis import Stage
 from eval.metrics.ratio import mean
 

@@ -17,7 +17,7 @@ from eval.benchmark.ground_boxes import read_boxes
 from eval.benchmark.ground_figures import Figures
 from eval.benchmark.ground_grid import in_turn, rival_of, time_figures
 from eval.benchmark.ground_methods import Contestant
-from eval.benchmark.ground_table import Rows, say
+from eval.benchmark.table import Rows, say
 from eval.metrics.ratio import mean, ratio
 
 VARIABLE = "DATMO_REAL_DATA"

@@ -13,7 +13,7 @@ from typing import Any
 from eval.benchmark.ground_figures import NAMES
 from eval.benchmark.ground_grid import Row
 from eval.benchmark.ground_plot import plot
-from eval.benchmark.ground_table import Rows, markdown
+from eval.benchmark.table import Rows, markdown
 from eval.facts import hardware, versions
 from eval.output import writing_folder
 

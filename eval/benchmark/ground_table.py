@@ -1,15 +1,12 @@
-"""Tables of the ground benchmark as plain rows of text, for the terminal and for markdown."""
+"""Tables of the ground benchmark: figures by scene, by class and by grade."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-
-from rich.markup import escape
-from rich.table import Table
 
 from eval.benchmark.ground_ablation import Cost
 from eval.benchmark.ground_grid import Row, mean_figure, methods_of
+from eval.benchmark.table import Rows, say
 
 FEW = 8
 """So many scenes are shown one by one; more are shown as means by class and by grade."""
@@ -27,21 +24,6 @@ COLUMNS = (
     ("ratio", "ratio", 1, 2),
 )
 """Figure, head, factor and digits."""
-
-
-@dataclass(frozen=True)
-class Rows:
-    """A table: a title, the heads of its columns and its rows; the first `left` columns are text."""
-
-    title: str
-    heads: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-    left: int = 2
-
-
-def say(value: float | None, factor: float = 1, digits: int = 3, sign: bool = False) -> str:
-    """A figure as text; a dash where there is none."""
-    return "-" if value is None else f"{factor * value:{'+' if sign else ''}.{digits}f}"
 
 
 def tables(rows: Sequence[Row]) -> list[Rows]:
@@ -73,19 +55,3 @@ def ablation_table(costs: Sequence[Cost]) -> Rows:
         for i, (name, got) in enumerate(costs)
     )
     return Rows("ablation", ("method", *(head for _, head, _, _ in shown)), made, left=1)
-
-
-def rich_table(table: Rows) -> Table:
-    """For the terminal."""
-    made = Table(box=None, header_style="bold", pad_edge=False)
-    for i, head in enumerate(table.heads):
-        made.add_column(escape(head), justify="left" if i < table.left else "right")
-    for row in table.rows:
-        made.add_row(*map(escape, row))
-    return made
-
-
-def markdown(table: Rows) -> str:
-    """For a page."""
-    lines = [table.heads, tuple("---" if i < table.left else "---:" for i in range(len(table.heads)))]
-    return "".join("| " + " | ".join(row) + " |\n" for row in (*lines, *table.rows))

@@ -19,7 +19,7 @@ from datmo.ground import METHODS, GroundConfig, GroundSegmenter
 from eval.benchmark.ground_figures import height_figures
 from eval.benchmark.ground_methods import check_methods
 from eval.benchmark.ground_scenes import Scene
-from eval.benchmark.ground_table import Rows, say
+from eval.benchmark.table import Rows, say
 
 WANTED = ("z", "zl", "zli")
 DRAWS, LEVEL = 10_000, 0.95

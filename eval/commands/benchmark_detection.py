@@ -39,7 +39,7 @@ def detection(
     """
     from eval import console
     from eval.benchmark.detection import ABLATIONS, benchmark_detection, shown, write
-    from eval.benchmark.ground_table import rich_table
+    from eval.benchmark.table import rich_table
     from eval.output import refuse_existing
 
     if out is not None:

@@ -116,7 +116,7 @@ def leave(report: Report, out: Path | None, force: bool) -> None:
 def show(report: Report) -> None:
     """Print the tables, and what follows from them."""
     from eval import console
-    from eval.benchmark.ground_table import rich_table
+    from eval.benchmark.table import rich_table
 
     screen = console.stdout()
     for table in report.tables:

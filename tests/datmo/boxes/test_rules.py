@@ -1,13 +1,12 @@
-"""The rule filter and the guess of kind."""
+"""The rule filter."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from datmo.boxes.config import KINDS, FilterConfig
-from datmo.boxes.rules import apply_rules, guess_kinds
-from datmo.messages import Kind
+from datmo.boxes.config import FilterConfig
+from datmo.boxes.rules import apply_rules
 
 ENOUGH = 60
 
@@ -86,16 +85,3 @@ def test_every_box_is_kept_or_named_once():
     assert sorted([*np.flatnonzero(kept), *(r.cluster for r in rejections)]) == list(range(200))
     assert 20 < kept.sum() < 180
     assert [r.cluster for r in rejections] == sorted(r.cluster for r in rejections)
-
-
-def test_kinds_by_size():
-    sizes = {
-        (0.6, 0.4, 1.75): Kind.PEDESTRIAN,
-        (4.3, 1.8, 1.5): Kind.CAR,
-        (1.7, 0.3, 1.4): Kind.CAR,
-        (5.5, 2.0, 2.5): Kind.VAN,
-        (10.0, 2.5, 3.5): Kind.TRUCK,
-        (0.3, 0.2, 3.0): Kind.UNKNOWN,
-        (9.0, 0.5, 1.0): Kind.UNKNOWN,
-    }
-    assert guess_kinds(np.array(list(sizes)), KINDS).tolist() == list(sizes.values())
