@@ -86,8 +86,7 @@ def over_points(
             q = min(int(np.searchsorted(nodes, r, side="right")) - 1, N)
         t = min((r - nodes[q]) * inverse[q], 1.0)
         s += 0.5  # from the middle of the last segment
-        b = int(s)
-        f = s - b
+        b, f = int(s), s - int(s)
         a, b = (b - 1 if b > 0 else M - 1), (b if b < M else 0)
         low = (1 - t) * table[a, q] + t * table[a, q + 1]
         high = (1 - t) * table[b, q] + t * table[b, q + 1]

@@ -85,8 +85,7 @@ def segment_slopes(
     M, N = r.shape
     at, at_nodes, count = np.full((M, N), default), np.empty((M, len(nodes))), np.zeros(M, np.int32)
     if method == "incremental":
-        rows = (r, z, present, at, at_nodes, count)
-        over_rows(_incremental_slopes, rows, (nodes, rules, default, draws))
+        over_rows(_incremental_slopes, (r, z, present, at, at_nodes, count), (nodes, rules, default, draws))
         return at, at_nodes, count
     lines = np.empty((N, COLUMNS))
     for m in range(M):
