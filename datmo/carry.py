@@ -53,14 +53,16 @@ def _owners(
             number[k] += 1
     owner = np.full(count, -1, np.int64)
     for k in range(count):
-        x, y, t = mean[k] / max(number[k], 1.0)
+        if number[k] == 0:
+            continue
+        x, y, t = mean[k] / number[k]
         deepest = 1.0
         for b in range(len(center)):
             dx, dy = x - center[b, 0] - velocity[b, 0] * t, y - center[b, 1] - velocity[b, 1] * t
             c, s = np.cos(yaw[b]), np.sin(yaw[b])
             along, across = abs(c * dx + s * dy), abs(c * dy - s * dx)
             depth = max(along / (size[b, 0] / 2 + PAD), across / (size[b, 1] / 2 + PAD))
-            if depth < deepest and number[k] > 0:
+            if depth < deepest:
                 deepest, owner[k] = depth, b
     return owner
 

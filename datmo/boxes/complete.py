@@ -23,16 +23,25 @@ class Whole:
     """The completed rectangles, row = cluster.
 
     Attributes:
-        extent: (k, 4) x0, x1, y0, y1 along the axes of the seen rectangle [m]. turned: (k,) whether the
-        length lies along y. kind: (k,) `Kind`. var: (k, 2) of the centre along x and y [m²].
-        turn: (k,) probability that the length lies along the other axis.
+        extent: (k, 4) x0, x1, y0, y1 along the axes of the seen rectangle [m]. kind: (k,) `Kind`.
+        var: (k, 2) of the centre along x and y [m²]. turn: (k,) probability that the length lies along
+        the other axis.
     """
 
     extent: F64
-    turned: Bool
     kind: U8
     var: F64
     turn: F64
+
+    @property
+    def size(self) -> F64:
+        """(k, 2) along x and y [m]."""
+        return np.asarray(self.extent[:, 1::2] - self.extent[:, ::2])
+
+    @property
+    def turned(self) -> Bool:
+        """(k,) whether the length lies along y."""
+        return np.asarray(self.size[:, 1] > self.size[:, 0])
 
 
 def complete(extent: F64, height: F64, sensor: F64, config: CompleteConfig) -> Whole:
@@ -44,31 +53,23 @@ def complete(extent: F64, height: F64, sensor: F64, config: CompleteConfig) -> W
     """
     extent, k, priors = np.asarray(extent, float), len(extent), config.kinds
     seen = extent[:, 1::2] - extent[:, ::2]
-    if not priors:
-        none = np.zeros(k)
-        kind = np.full(k, Kind.UNKNOWN, np.uint8)
-        return Whole(extent, seen[:, 1] > seen[:, 0], kind, seen**2 / 12 + config.place**2, none)
     bounded = _bounded(extent, sensor, config.grazing)
-    score = np.full((len(priors), 2, k), config.unknown)
-    cut = np.zeros((len(priors), 2, k, 2), bool)
+    # The last hypothesis is that no kind suits: nothing is cut, nothing is added.
+    score = np.full((len(priors) + 1, 2, k), config.unknown)
+    cut = np.zeros((len(priors) + 1, 2, k, 2), bool)
     for i, prior in enumerate(priors):
         tall = _normal(height, prior.height) + np.log(prior.share)
         for j, sizes in enumerate(((prior.length, prior.width), (prior.width, prior.length))):
             fits, cut[i, j] = _suits(seen, bounded, sizes, config.cut)
             score[i, j] = fits + tall
-    flat = score.reshape(2 * len(priors), k)
-    best = flat.argmax(0)
-    kind, along = np.divmod(best, 2)
-    known = flat.max(0) > config.unknown
-    rows = np.arange(k)
-    odds = np.exp(np.clip(score[kind, 1 - along, rows] - flat.max(0), -50, 0))
+    kind, along = np.divmod(score.reshape(2 * len(score), k).argmax(0), 2)
+    known, rows = kind < len(priors), np.arange(k)
+    odds = np.exp(np.clip(score[kind, 1 - along, rows] - score[kind, along, rows], -50, 0))
     mean, std = _sizes(priors, kind, along)
-    grown, var = _grow(extent, sensor, cut[kind, along, rows], mean, std, known, config)
-    long = grown[:, 1::2] - grown[:, ::2]
-    turned = long[:, 1] > long[:, 0]
-    names = np.array([prior.kind for prior in priors], np.uint8)
-    return Whole(grown, turned, np.where(known, names[kind], Kind.UNKNOWN).astype(np.uint8), var,
-                 np.where(known, odds / (1 + odds), 0.0))  # fmt: skip
+    grown, var = _grow(extent, sensor, cut[kind, along, rows], mean, std, config)
+    names = np.array([*(prior.kind for prior in priors), Kind.UNKNOWN], np.uint8)
+    var = np.where(known[:, None], var, seen**2 / 12 + config.place**2)
+    return Whole(grown, names[kind], var, np.where(known, odds / (1 + odds), 0.0))
 
 
 def _bounded(extent: F64, sensor: F64, grazing: float) -> Bool:
@@ -105,22 +106,22 @@ def _suits(
 
 
 def _sizes(priors: tuple[SizePrior, ...], kind: F64, along: F64) -> tuple[F64, F64]:
-    """Mean and std (k, 2) of the chosen kind's size along x and y [m]."""
-    table = np.array([(prior.length, prior.width) for prior in priors])[kind]  # (k, length|width, mean|std)
+    """Mean and std (k, 2) of the chosen kind's size along x and y [m]; mean 0 of none."""
+    none = ((0.0, 1.0), (0.0, 1.0))
+    table = np.array([*((prior.length, prior.width) for prior in priors), none])[kind]  # (k, side, mean|std)
     table = np.where((along == 1)[:, None, None], table[:, ::-1], table)
     return table[..., 0], table[..., 1]
 
 
 def _grow(
-    extent: F64, sensor: F64, cut: Bool, mean: F64, std: F64, known: Bool, config: CompleteConfig
+    extent: F64, sensor: F64, cut: Bool, mean: F64, std: F64, config: CompleteConfig
 ) -> tuple[F64, F64]:
     """Extents (k, 4) with the far ends moved out, and the variance (k, 2) of their middles."""
     seen, middle = extent[:, 1::2] - extent[:, ::2], (extent[:, 1::2] + extent[:, ::2]) / 2
     gain = np.where(cut, 1.0, config.edge**2 / (config.edge**2 + std**2))
-    more = np.where(known[:, None], gain * np.maximum(mean - seen, 0), 0.0)
+    more = gain * np.maximum(mean - seen, 0)
     far = np.where(sensor > middle, -1.0, 1.0)
     grown = extent.copy()
     grown[:, ::2] -= np.where(far < 0, more, 0)
     grown[:, 1::2] += np.where(far > 0, more, 0)
-    var = np.where(cut, std**2 / 4 + (HALF_WIDTH * more) ** 2, config.edge**2 / 4) + config.place**2
-    return grown, np.where(known[:, None], var, seen**2 / 12 + config.place**2)
+    return grown, np.where(cut, std**2 / 4 + (HALF_WIDTH * more) ** 2, config.edge**2 / 4) + config.place**2

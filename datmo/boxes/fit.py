@@ -24,13 +24,12 @@ def fit_boxes(
     sensor_xy: Array,
     config: BoxConfig | None = None,
 ) -> tuple[Detections, tuple[Rejection, ...]]:
-    """A box around what is seen of each cluster (method.md sections 6 and 7).
+    """The box of what each cluster is a part of (method.md sections 6 and 7).
 
-    The heading comes from the rectangle search over the outline, the extent from all the points,
+    The heading comes from the rectangle search over the outline, the seen extent from all the points,
     the base from the mean ground under them, the top from the highest. The rule filter sees this
-    final box. Length >= width, so where only the rear of a car is seen the yaw lies along the
-    rear: yaw is known modulo pi/2 from one side, modulo pi at best. The size is that of the seen
-    part; completing it is the tracker's work.
+    seen part. What a road user hides of itself is then added (see `datmo.boxes.complete`), so that
+    the yaw lies along its length; yaw is known modulo pi at best.
 
     Args:
         points_world: (n, 3) [m, world].

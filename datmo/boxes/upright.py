@@ -39,8 +39,7 @@ def upright(seen: F64, whole: Whole, angle: F64) -> Upright:
     Args:
         seen: (k, 4) x0, x1, y0, y1 along axes at `angle` (k,) [rad] [m].
     """
-    extent, turned = whole.extent, whole.turned
-    size, middle = extent[:, 1::2] - extent[:, ::2], (extent[:, ::2] + extent[:, 1::2]) / 2
+    size, turned, middle = whole.size, whole.turned, (whole.extent[:, ::2] + whole.extent[:, 1::2]) / 2
     c, s = np.cos(angle), np.sin(angle)
     center = np.column_stack([c * middle[:, 0] - s * middle[:, 1], s * middle[:, 0] + c * middle[:, 1]])
     about = seen - middle[:, [0, 0, 1, 1]]

@@ -37,6 +37,7 @@ def log_lengths(
 def _log_lengths(
     r: F64, z: F64, present: Bool, at: F64, at_nodes: F64, count: I32, nodes: F64, rules: F64
 ) -> None:
+    """Some segments: writes at, at_nodes and count where they have lines."""
     N = r.shape[1]
     lines, ends, logs = np.empty((N, COLUMNS)), np.empty(2 * N), np.empty(2 * N)
     for m in range(len(r)):

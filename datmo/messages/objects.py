@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from typing import Self
 
 import numpy as np
 
@@ -68,14 +69,13 @@ class Boxes(Message):
         return len(self.center)
 
     @classmethod
-    def empty(cls) -> Boxes:
+    def empty(cls) -> Self:
         """No boxes."""
         return cls(center=np.zeros((0, 3)), size=np.zeros((0, 3)), yaw=np.zeros(0))
 
-    def select(self, rows: Array) -> Boxes:
+    def select(self, rows: Array) -> Self:
         """The boxes of `rows` (indices or a mask), in that order."""
-        names = ("center", "size", "yaw", "velocity", "score", "id", "kind")
-        return Boxes(**{name: getattr(self, name)[rows] for name in names})
+        return type(self)(**{f.name: getattr(self, f.name)[rows] for f in fields(self)})
 
     def visible(self) -> Boxes:
         """What of the boxes was seen; of those that are no detections, all."""
@@ -108,10 +108,6 @@ class Detections(Boxes):
         self._set("seen", (k, 4), np.float64)
         self._set("shape", (k,), np.uint8, 0)
         self._set("cluster", (k,), np.int64, -1)
-
-    def select(self, rows: Array) -> Detections:
-        """The detections of `rows` (indices or a mask), in that order."""
-        return Detections(**{f.name: getattr(self, f.name)[rows] for f in fields(self)})
 
     def visible(self) -> Boxes:
         """The seen parts alone, length >= width, yaw in [-pi/2, pi/2)."""

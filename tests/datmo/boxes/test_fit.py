@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from datmo.boxes import BoxConfig, FilterConfig, fit_boxes
 from datmo.errors import MessageError
 from datmo.geometry import wrap_angle
-from datmo.messages import Clusters, Kind
+from datmo.messages import Clusters, Detections, Kind
 
 SENSOR = np.zeros(2)
 OPEN = FilterConfig(
@@ -137,10 +137,8 @@ def test_labels_boxes_and_rejections_account_for_each_other():
 
 
 def test_no_clusters_no_boxes():
-    boxes, rejected = fit(np.zeros((0, 3)))
-    assert (len(boxes), rejected) == (0, ())
-    boxes, rejected = fit(np.ones((4, 3)), label=[-1] * 4)
-    assert (len(boxes), rejected) == (0, ())
+    assert fit(np.zeros((0, 3))) == (Detections.empty(), ())
+    assert fit(np.ones((4, 3)), label=[-1] * 4) == (Detections.empty(), ())
 
 
 def test_bad_rows_are_refused():
