@@ -46,7 +46,7 @@ class SizePrior(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     kind: Kind
-    share: float = Field(gt=0, le=1, description="of all road users [1]")
+    share: float = Field(gt=0, le=1, description="how common, road users together are 1 [1]")
     length: Size = Field(description="[m]")
     width: Size = Field(description="[m]")
     height: Size = Field(description="top above the ground [m]")
@@ -62,6 +62,8 @@ KINDS = (
     SizePrior(kind=Kind.TRUCK, share=0.028, length=(9.0, 2.5), width=(2.5, 0.2), height=(3.2, 0.5)),
     SizePrior(kind=Kind.PEDESTRIAN, share=0.115, length=(0.7, 0.2), width=(0.6, 0.15), height=(1.7, 0.2)),
     SizePrior(kind=Kind.BICYCLE, share=0.042, length=(1.75, 0.15), width=(0.6, 0.1), height=(1.75, 0.15)),
+    # Poles and trunks, which would else be the corner of something large: no road user, and so of no kind.
+    SizePrior(kind=Kind.UNKNOWN, share=0.1, length=(0.3, 0.15), width=(0.2, 0.1), height=(4.0, 0.8)),
 )
 
 

@@ -52,6 +52,31 @@ def test_the_side_of_the_sensor_decides_which_end_moves(extent):
     assert swapped.turned[0] != one(extent).turned[0]
 
 
+@pytest.mark.parametrize("sensor", [(-20.0, 0.1), (-20.0, -15.0), (0.1, -20.0)])
+def test_kinds_by_size(sensor):
+    sizes = {
+        (0.6, 0.4, 1.75): Kind.PEDESTRIAN,
+        (4.3, 1.8, 1.5): Kind.CAR,
+        (1.7, 0.3, 1.4): Kind.CAR,
+        (5.5, 2.0, 2.5): Kind.VAN,
+        (10.0, 2.5, 3.5): Kind.TRUCK,
+        (0.3, 0.2, 3.0): Kind.UNKNOWN,
+        (9.0, 0.5, 1.0): Kind.UNKNOWN,
+    }
+    half = np.array(list(sizes))[:, [0, 0, 1, 1]] / 2 * np.array([-1, 1, -1, 1])
+    height = np.array([h for _, _, h in sizes])
+    found = complete(half, height, np.tile(sensor, (len(sizes), 1)), CONFIG)
+    assert found.kind.tolist() == list(sizes.values())
+
+
+@pytest.mark.parametrize("height", [2.4, 3.0, 3.4])
+@pytest.mark.parametrize("width", [0.1, 0.2, 0.3])
+def test_a_pole_is_no_part_of_something_large(width, height):
+    found = one((20.0, 20.0 + width, -width / 2, width / 2), height)
+    assert found.kind[0] == Kind.UNKNOWN
+    assert found.size.max() < 0.5
+
+
 def test_what_was_not_seen_is_less_sure():
     rear, corner = one(REAR), one(CORNER)
     assert rear.var[0, 0] > 4 * rear.var[0, 1]
