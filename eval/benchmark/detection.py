@@ -11,6 +11,8 @@ from typing import Any
 from datmo.config import DatmoConfig
 from datmo.errors import ConfigError
 from eval.benchmark.detection_table import Goal, goal_table, goals, tables
+from eval.benchmark.portrait_plot import plot
+from eval.benchmark.portraits import Portrait, portraits
 from eval.benchmark.sightings import Job, Sighting, detect
 from eval.benchmark.table import Rows, markdown
 from eval.facts import hardware, versions
@@ -92,8 +94,19 @@ def _ablation(results: Sequence[Result]) -> Rows:
     return Rows("ablation", heads, tuple(lines), left=1)
 
 
-def write(results: Sequence[Result], settings: Mapping[str, Any], folder: Path, force: bool) -> None:
-    """Leave detection.json and detection.md in `folder`.
+def drawn(scenarios: Sequence[str], seed: int, frames: int | None = None) -> bytes:
+    """PNG of one object of each sort in one episode of each scenario, and of what feedback joins again."""
+    alone = changed(ABLATIONS["feedback of the tracker"])
+    found: dict[str, Portrait] = {}
+    for scenario in scenarios:
+        found = portraits(Job(load(scenario), seed, frames, DatmoConfig()), alone) | found
+    return plot(found)
+
+
+def write(
+    results: Sequence[Result], picture: bytes, settings: Mapping[str, Any], folder: Path, force: bool
+) -> None:
+    """Leave detection.json, detection.md and detection.png in `folder`.
 
     Raises:
         OutputError: `folder` exists and `force` is not set.
@@ -112,3 +125,4 @@ def write(results: Sequence[Result], settings: Mapping[str, Any], folder: Path, 
         (beside / "detection.json").write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
         text = "".join(f"{markdown(table)}\n" for table in shown(results))
         (beside / "detection.md").write_text(text, encoding="utf-8")
+        (beside / "detection.png").write_bytes(picture)

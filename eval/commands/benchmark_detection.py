@@ -29,7 +29,8 @@ def detection(
     """Detection against the truth: recall, corners, yaw, overlap, splits, merges, and what lost the rest.
 
     Objects with ten returns or more count. The tracker is in the loop, so that its predictions come
-    back to the clusters. With --out, leaves detection.json and detection.md in DIR.
+    back to the clusters. With --out, leaves detection.json, detection.md and detection.png, where objects
+    stand with their boxes, in DIR.
 
     \b
     Examples:
@@ -38,7 +39,7 @@ def detection(
       datmo benchmark detection --frames 30 --ablation
     """
     from eval import console
-    from eval.benchmark.detection import ABLATIONS, benchmark_detection, shown, write
+    from eval.benchmark.detection import ABLATIONS, benchmark_detection, drawn, shown, write
     from eval.benchmark.table import rich_table
     from eval.output import refuse_existing
 
@@ -54,5 +55,5 @@ def detection(
         screen.print()
     if out is not None:
         asked = {"scenarios": names, "seeds": numbers, "frames": frames, "ablation": ablation}
-        write(results, asked, out, force)
+        write(results, drawn(names, first, frames), asked, out, force)
         screen.print(f"written: {out}", markup=False)

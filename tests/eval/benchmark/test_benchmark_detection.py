@@ -79,6 +79,7 @@ def test_the_command_leaves_its_files(
     assert {row["scan"] for row in rows} == {0, 1, 2}
     assert all(row["returns"] >= 10 and row["found"] == (row["corner_error"] is not None) for row in rows)
     assert all((row["stage"] == 0) == row["found"] for row in rows)
+    assert (out / "detection.png").read_bytes().startswith(b"\x89PNG")
     assert call(asked) == BAD_INPUT  # results are not overwritten
     (again,) = benchmark_detection([str(scenario)], [100], 3)
     assert [vars(row) for row in again.rows] == rows
