@@ -38,8 +38,12 @@ def plot(portraits: Mapping[str, Portrait]) -> bytes:
         axes.set_axis_off()
     for i, title in enumerate(sorted(portraits)):
         line, column = divmod(i, COLUMNS)
-        _above(panels[2 * line][column], portraits[title])
-        _beside(panels[2 * line + 1][column], portraits[title])
+        pair = panels[2 * line][column], panels[2 * line + 1][column]
+        _above(pair[0], portraits[title])
+        _beside(pair[1], portraits[title])
+        ends = [axes.get_xlim() for axes in pair]
+        for axes in pair:
+            axes.set_xlim(min(low for low, _ in ends), max(high for _, high in ends))
     names = ("truth", "box", "seen part")
     marks = [Axes.plot(panels[0][0], [], [], **style)[0] for style in STYLES.values()]
     made.legend(marks, names, loc="outside lower center", ncols=3, frameon=False, fontsize=8.5)
@@ -52,9 +56,10 @@ def _above(axes: Axes, portrait: Portrait) -> None:
         for corners in corners_bev(boxes.center, boxes.size, boxes.yaw):
             closed = np.vstack([corners, corners[:1]])
             axes.plot(closed[:, 0], closed[:, 1], **STYLES[name])
-    reach = portrait.truth.size[0, :2] / 2
-    tip = portrait.sensor * float(np.hypot(*reach) + 0.3)
-    end = tip + 0.9 * portrait.sensor
+    reach = float(np.hypot(*portrait.truth.size[0, :2])) / 2
+    tip, end = 1.15 * reach * portrait.sensor, 1.5 * reach * portrait.sensor
+    axes.update_datalim([tuple(end)])  # an arrow that ends outside would not be drawn
+    axes.autoscale_view()
     axes.annotate("", tuple(end), tuple(tip), arrowprops={"arrowstyle": "->", "color": FAINT})
     axes.set_title(f"{portrait.title}\n{len(portrait.points)} returns", fontsize=8.5, color=INK)
     axes.tick_params(labelbottom=False)
