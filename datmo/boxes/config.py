@@ -80,13 +80,18 @@ class CompleteConfig(BaseModel):
     place: float = Field(0.05, gt=0, description="std of a side's place [m]")
 
 
+Criterion = Literal["closeness", "area", "squared_error", "weighted", "hull", "volume", "axis-aligned"]
+
+
 class BoxConfig(BaseModel):
     """How clusters become boxes (method.md section 6)."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    criterion: Literal["closeness", "area", "squared_error", "weighted", "hull"] = Field(
-        "closeness", description="of the rectangle search (Zhang 2017); 'hull' is the rectangle of least area"
+    criterion: Criterion = Field(
+        "closeness",
+        description="of the rectangle search (Zhang 2017); 'hull' takes the rectangle of least area, 'volume' "
+        "the heading of the box of least volume in space, 'axis-aligned' the axes of the world",
     )
     weights: tuple[float, float, float] = Field(
         (0.2, 0.5, 0.3), description="of area, closeness and squared error in 'weighted' [1]"

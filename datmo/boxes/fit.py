@@ -13,6 +13,7 @@ from datmo.boxes.rectangle import extents, search
 from datmo.boxes.rules import Rejection, apply_rules
 from datmo.boxes.shape import shapes
 from datmo.boxes.upright import to_axes, upright
+from datmo.boxes.volume import heading_of, least_volume_boxes
 from datmo.errors import MessageError
 from datmo.messages import Clusters, Detections
 
@@ -26,7 +27,8 @@ def fit_boxes(
 ) -> tuple[Detections, tuple[Rejection, ...]]:
     """The box of what each cluster is a part of (method.md sections 6 and 7).
 
-    The heading comes from the rectangle search over the outline, the seen extent from all the points,
+    The heading comes from the rectangle search over the outline (or, by `criterion`, from all the points:
+    the rectangle of least area, the box of least volume), the seen extent from all the points,
     the base from the mean ground under them, the top from the highest. The rule filter sees this
     seen part. What a road user hides of itself is then added (see `datmo.boxes.complete`), so that
     the yaw lies along its length; yaw is known modulo pi at best.
@@ -62,7 +64,7 @@ def _fit(
     number = np.diff(starts)
     xy = np.ascontiguousarray(points[rows, :2])
     outline, length = outlines(xy, starts, sensor_xy, config.outline_points, np.deg2rad(config.outline_step))
-    angle = _angles(xy, starts, outline, length, config)
+    angle = _angles(points[rows], starts, outline, length, config)
     extent = extents(xy, starts, angle)
     base, top = _heights(points[rows, 2], ground[rows], starts)
     height = np.maximum(top - base, 0)
@@ -83,10 +85,15 @@ def _fit(
     return found, number
 
 
-def _angles(xy: F64, starts: I64, outline: F64, length: I64, config: BoxConfig) -> F64:
-    """Angle (k,) of each cluster's rectangle [rad, 0 <= angle < pi/2]."""
+def _angles(points: F64, starts: I64, outline: F64, length: I64, config: BoxConfig) -> F64:
+    """Angle (k,) of each cluster's rectangle [rad, 0 <= angle < pi/2], from points (n, 3) [m, world]."""
+    if config.criterion == "axis-aligned":
+        return np.zeros(len(length))
     if config.criterion == "hull":
-        return np.asarray(least_area_angles(xy, starts))
+        return np.asarray(least_area_angles(np.ascontiguousarray(points[:, :2]), starts))
+    if config.criterion == "volume":
+        rotation, _, size = least_volume_boxes(points, starts)
+        return heading_of(rotation, size)
     step = np.deg2rad(config.step)
     return search(outline, length, step, config.nearest, config.criterion, config.weights)
 

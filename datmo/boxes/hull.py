@@ -59,6 +59,8 @@ def least_area_angles(xy: F64, starts: I64) -> F64:
         for i in range(len(hull)):
             j = (i + 1) % len(hull)
             angle = np.arctan2(hull[j, 1] - hull[i, 1], hull[j, 0] - hull[i, 0]) % (np.pi / 2)
+            if angle >= np.pi / 2:  # the remainder of -1e-17 is the divisor itself
+                angle = 0.0
             c, s = np.cos(angle), np.sin(angle)
             x, y = c * hull[:, 0] + s * hull[:, 1], c * hull[:, 1] - s * hull[:, 0]
             area = (x.max() - x.min()) * (y.max() - y.min())

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from typing import get_args
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from datmo.boxes import BoxConfig, FilterConfig, fit_boxes
+from datmo.boxes.config import Criterion
 from datmo.errors import MessageError
 from datmo.geometry import wrap_angle
 from datmo.messages import Clusters, Detections, Kind
 
 SENSOR = np.zeros(2)
+CRITERIA = get_args(Criterion)
 OPEN = FilterConfig(
     points=1, length=(0, 1e6), width=(0, 1e6), height=(0, 1e6), area=(0, 1e9), volume=(0, 1e9)
 )
@@ -86,11 +90,12 @@ def test_moving_and_turning_the_world_moves_and_turns_the_boxes(seed, dx, dy, de
     np.testing.assert_allclose(np.sin(moved.yaw - plain.yaw - turn), 0, atol=1e-6)
 
 
-@pytest.mark.parametrize("criterion", ["closeness", "area", "squared_error", "weighted", "hull"])
+@pytest.mark.parametrize("criterion", CRITERIA)
 def test_every_criterion_finds_a_box_without_noise(criterion):
-    points, ground = solid((14, 8), (4.0, 1.6, 1.4), 0.35)
+    yaw = 0.0 if criterion == "axis-aligned" else 0.35
+    points, ground = solid((14, 8), (4.0, 1.6, 1.4), yaw)
     boxes, _ = fit(points, ground, config=ANYTHING.model_copy(update={"criterion": criterion}))
-    assert abs(wrap_angle(boxes.yaw[0] - 0.35)) <= np.deg2rad(1.5)
+    assert abs(wrap_angle(boxes.yaw[0] - yaw)) <= np.deg2rad(1.5)
 
 
 DEGENERATE = {
@@ -105,7 +110,7 @@ DEGENERATE = {
 }
 
 
-@pytest.mark.parametrize("criterion", ["closeness", "area", "squared_error", "weighted", "hull"])
+@pytest.mark.parametrize("criterion", CRITERIA)
 @pytest.mark.parametrize("case", list(DEGENERATE))
 def test_degenerate_clusters(case, criterion):
     config = ANYTHING.model_copy(update={"criterion": criterion})

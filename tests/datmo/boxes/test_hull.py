@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -62,3 +63,9 @@ def test_degenerate_clusters_have_an_angle():
     angles = least_area_angles(np.concatenate(clusters), starts)
     assert np.all(angles[:3] == 0)
     np.testing.assert_allclose(angles[3], 0.4)
+
+
+@pytest.mark.parametrize("tilt", [1e-17, 1e-18, 5e-324])
+def test_an_edge_that_all_but_lies_along_an_axis_has_the_angle_zero(tilt):
+    two, four = np.array([[0, 0], [1, -tilt]]), np.array([[0, 0], [1, -tilt], [1, 1], [0, 1]])
+    assert np.all(least_area_angles(np.concatenate([two, four]), np.array([0, 2, 6])) == 0)
