@@ -43,15 +43,18 @@ def rings_of(points: F32) -> I32:
 
     In KITTI's files a ring runs anticlockwise from the x axis; a jump back of more than half a turn
     starts the next. A cloud in no such order gives meaningless rings; then none of its neighbours
-    is near and few points are tested (see `distances`).
+    is near and few points are tested (see `distances`). Points without an azimuth are passed over.
     """
     ring = np.zeros(len(points), np.int32)
-    last, now = 0.0, 0
+    last_x, last_y, now = 1.0, 0.0, 0
     for i in range(len(points)):
-        azimuth = np.arctan2(np.float64(points[i, 1]), np.float64(points[i, 0])) % (2 * np.pi)
-        if last - azimuth > np.pi:
-            now += 1
-        last = azimuth if np.isfinite(azimuth) else last
+        x, y = np.float64(points[i, 0]), np.float64(points[i, 1])
+        if 0 < x * x + y * y < np.inf:
+            # From below the x axis to above it, anticlockwise by less than half a turn: the azimuth in
+            # [0, 2 pi) fell by more than half a turn.
+            if last_y < 0 and y >= 0 and last_x * y - last_y * x > 0:
+                now += 1
+            last_x, last_y = x, y
         ring[i] = now
     return ring
 
@@ -65,18 +68,37 @@ def distances(points: F32, ring: I32, keep: Bool, side: int) -> F32:
     """
     out = np.full(len(points), np.nan, np.float32)
     at = np.flatnonzero(keep)
+    square = np.full(len(at), np.inf, np.float32)
     for k in range(len(at)):
-        i, best = at[k], np.inf
-        for o in range(max(k - side, 0), min(k + side + 1, len(at))):
+        i = at[k]
+        for o in range(k + 1, min(k + side + 1, len(at))):  # each pair once; those before k are done
             j = at[o]
-            if o != k and ring[i] == ring[j]:
+            if ring[i] == ring[j]:
                 dx, dy = points[i, 0] - points[j, 0], points[i, 1] - points[j, 1]
                 dz = points[i, 2] - points[j, 2]
-                best = min(best, dx * dx + dy * dy + dz * dz)
-        if best < np.inf:
+                d = dx * dx + dy * dy + dz * dz
+                square[k], square[o] = min(square[k], d), min(square[o], d)
+        if square[k] < np.inf:
             x, y, z = points[i, 0], points[i, 1], points[i, 2]
-            out[i] = np.sqrt(best / max(x * x + y * y + z * z, TINY))
+            out[i] = np.sqrt(np.float64(square[k]) / max(x * x + y * y + z * z, TINY))
     return out
+
+
+@numba.njit(cache=True, nogil=True)
+def mean_and_std(values: F32) -> tuple[float, float]:
+    """Of the values (n,) that are not NaN; NaN where there are none."""
+    n, total, square = 0, 0.0, 0.0
+    for i in range(len(values)):
+        if not np.isnan(values[i]):
+            n += 1
+            total += values[i]
+    if n == 0:
+        return np.nan, np.nan
+    mean = total / n
+    for i in range(len(values)):
+        if not np.isnan(values[i]):
+            square += (values[i] - mean) ** 2
+    return mean, np.sqrt(square / n)
 
 
 def refine(scan: Scan, config: RefineConfig | None = None) -> Bool:
@@ -98,10 +120,7 @@ def refine(scan: Scan, config: RefineConfig | None = None) -> Bool:
         return keep
     ring = scan.ring.astype(np.int32) if scan.ring.any() else rings_of(scan.points)
     nearest = distances(scan.points, ring, keep, c.neighbours)
-    known = np.isfinite(nearest)
-    if not known.any():
-        return keep
-    spread = nearest[known].astype(float)
-    limit = max(c.slack, float(spread.mean() + c.deviations * spread.std()))
+    mean, std = mean_and_std(nearest)
+    limit = max(c.slack, mean + c.deviations * std)
     # NaN compares False: a return without a neighbour is kept.
     return np.asarray(keep & ~(nearest > limit))

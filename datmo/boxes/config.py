@@ -90,8 +90,8 @@ class BoxConfig(BaseModel):
 
     criterion: Criterion = Field(
         "closeness",
-        description="of the rectangle search (Zhang 2017); 'hull' takes the rectangle of least area, 'volume' "
-        "the heading of the box of least volume in space, 'axis-aligned' the axes of the world",
+        description="of the rectangle search (Zhang 2017); 'hull' takes the rectangle of least area, "
+        "'volume' the heading of the box of least volume in space, 'axis-aligned' the axes of the world",
     )
     weights: tuple[float, float, float] = Field(
         (0.2, 0.5, 0.3), description="of area, closeness and squared error in 'weighted' [1]"

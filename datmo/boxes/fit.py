@@ -7,8 +7,9 @@ import numpy as np
 from datmo.arrays import F64, I64, Array
 from datmo.boxes.complete import complete
 from datmo.boxes.config import BoxConfig
+from datmo.boxes.gather import first_bad, gather, heights
 from datmo.boxes.hull import least_area_angles
-from datmo.boxes.outline import group, outlines
+from datmo.boxes.outline import outlines
 from datmo.boxes.rectangle import extents, search
 from datmo.boxes.rules import Rejection, apply_rules
 from datmo.boxes.shape import shapes
@@ -60,13 +61,12 @@ def _fit(
     points: F64, ground: F64, clusters: Clusters, sensor_xy: F64, config: BoxConfig
 ) -> tuple[Detections, I64]:
     """The box and the number of points of each cluster, whatever they are."""
-    rows, starts = group(clusters.label, clusters.count)
-    number = np.diff(starts)
-    xy = np.ascontiguousarray(points[rows, :2])
-    outline, length = outlines(xy, starts, sensor_xy, config.outline_points, np.deg2rad(config.outline_step))
-    angle = _angles(points[rows], starts, outline, length, config)
-    extent = extents(xy, starts, angle)
-    base, top = _heights(points[rows, 2], ground[rows], starts)
+    points, ground, starts = gather(points, ground, clusters.label, clusters.count)
+    number, step = np.diff(starts), np.deg2rad(config.outline_step)
+    outline, length = outlines(points, starts, sensor_xy, config.outline_points, step)
+    angle = _angles(points, starts, outline, length, config)
+    extent = extents(points, starts, angle)
+    base, top = heights(points[:, 2], ground, starts)
     height = np.maximum(top - base, 0)
     whole = complete(extent, height, to_axes(sensor_xy, angle), config.complete)
     boxes = upright(extent, whole, angle)
@@ -98,16 +98,6 @@ def _angles(points: F64, starts: I64, outline: F64, length: I64, config: BoxConf
     return search(outline, length, step, config.nearest, config.criterion, config.weights)
 
 
-def _heights(z: F64, ground: F64, starts: I64) -> tuple[F64, F64]:
-    """Mean ground and highest point (k,) of each cluster [m, world]; 0 for a label without points."""
-    base, top = np.zeros(len(starts) - 1), np.zeros(len(starts) - 1)
-    held = np.flatnonzero(np.diff(starts))
-    if len(held):
-        base[held] = np.add.reduceat(ground, starts[held]) / np.diff(starts)[held]
-        top[held] = np.maximum.reduceat(z, starts[held])
-    return base, top
-
-
 def _check(points: F64, clusters: Clusters, ground: F64) -> None:
     n = len(clusters.label)
     if points.shape != (n, 3) or ground.shape != (n,):
@@ -115,10 +105,8 @@ def _check(points: F64, clusters: Clusters, ground: F64) -> None:
             f"fit_boxes was given points {points.shape} and ground_z {ground.shape} for {n} labels; "
             "they must be (n, 3) and (n,); give one row a point"
         )
-    held = np.flatnonzero(clusters.label >= 0)
-    bad = ~np.isfinite(points[held].sum(1) + ground[held])
-    if bad.any():
-        row = int(held[np.argmax(bad)])
+    row = first_bad(points, ground, clusters.label)
+    if row >= 0:
         raise MessageError(
             f"fit_boxes: point {row} is {points[row]} on ground {ground[row]}; a point with a label must be "
             "finite; give it the label -1"

@@ -5,28 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from datmo.arrays import F64, I32, I64
-
-
-@njit(cache=True, nogil=True)
-def group(label: I32, count: int) -> tuple[I64, I64]:
-    """Rows of each cluster: `rows[starts[k]:starts[k + 1]]` are those of cluster k, in order.
-
-    Args:
-        label: (n,) -1 none. count: number of clusters.
-    """
-    starts = np.zeros(count + 1, np.int64)
-    for i in range(len(label)):
-        if label[i] >= 0:
-            starts[label[i] + 1] += 1
-    starts = np.cumsum(starts)
-    rows = np.empty(starts[-1], np.int64)
-    place = starts[:-1].copy()
-    for i in range(len(label)):
-        if label[i] >= 0:
-            rows[place[label[i]]] = i
-            place[label[i]] += 1
-    return rows, starts
+from datmo.arrays import F64, I64
 
 
 @njit(cache=True, nogil=True)
@@ -37,7 +16,7 @@ def outlines(xy: F64, starts: I64, sensor_xy: F64, most: int, step: float) -> tu
     that makes more than `most`. The result does not depend on the order of the points.
 
     Args:
-        xy: (n, 2) [m], cluster by cluster. starts: (k + 1,). sensor_xy: (2,) [m].
+        xy: (n, 2 or more) [m], cluster by cluster. starts: (k + 1,). sensor_xy: (2,) [m].
 
     Returns:
         outline (k, most, 2), by azimuth, and the number of points of each (k,).

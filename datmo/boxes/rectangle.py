@@ -37,7 +37,7 @@ def extents(xy: F64, starts: I64, angle: F64) -> F64:
     """Least and largest coordinate (k, 4): x0, x1, y0, y1 of each cluster along axes at its angle.
 
     Args:
-        xy: (n, 2) [m], cluster by cluster. starts: (k + 1,). angle: (k,) [rad].
+        xy: (n, 2 or more) [m], cluster by cluster. starts: (k + 1,). angle: (k,) [rad].
     """
     out = np.zeros((len(angle), 4))
     for k in range(len(angle)):

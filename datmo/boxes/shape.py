@@ -5,6 +5,7 @@ from __future__ import annotations
 from enum import IntEnum
 
 import numpy as np
+from numba import njit
 
 from datmo.arrays import F64, I64, U8
 
@@ -32,14 +33,7 @@ def shapes(outline: F64, length: I64, angle: F64, extent: F64, tolerance: float)
         extent: (k, 4) x0, x1, y0, y1 of the rectangle along its axes [m].
         tolerance: a point this near to an edge lies on that side [m].
     """
-    c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
-    x = c * outline[..., 0] + s * outline[..., 1]
-    y = c * outline[..., 1] - s * outline[..., 0]
-    distance = np.abs(np.stack([x, x, y, y], -1) - extent[:, None, :])  # (k, m, 4)
-    counts = np.arange(outline.shape[1]) < length[:, None]
-    near = counts & (distance.min(-1, initial=np.inf) <= tolerance)
-    side = distance.argmin(-1)
-    on = np.stack([(near & (side == e)).sum(1) for e in range(4)], 1)  # (k, 4)
+    on = _on_sides(outline, length, np.cos(angle), np.sin(angle), extent, tolerance)
     seen = (on >= LEAST_POINTS) & (on >= LEAST_SHARE * length[:, None])
     across, along = seen[:, :2].sum(1), seen[:, 2:].sum(1)
     thin = np.minimum(extent[:, 1] - extent[:, 0], extent[:, 3] - extent[:, 2]) < 2 * tolerance
@@ -49,3 +43,21 @@ def shapes(outline: F64, length: I64, angle: F64, extent: F64, tolerance: float)
         [Shape.NONE, Shape.I, Shape.V, Shape.I, Shape.L],
         Shape.U,
     ).astype(np.uint8)
+
+
+@njit(cache=True, nogil=True)
+def _on_sides(outline: F64, length: I64, cos: F64, sin: F64, extent: F64, tolerance: float) -> I64:
+    """Number (k, 4) of outline points that lie on each side, x0, x1, y0, y1; a point lies on the nearest."""
+    on = np.zeros((len(length), 4), np.int64)
+    for k in range(len(length)):
+        for i in range(length[k]):
+            x = cos[k] * outline[k, i, 0] + sin[k] * outline[k, i, 1]
+            y = cos[k] * outline[k, i, 1] - sin[k] * outline[k, i, 0]
+            side, nearest = 0, np.inf
+            for e in range(4):
+                distance = abs((x if e < 2 else y) - extent[k, e])
+                if distance < nearest:
+                    side, nearest = e, distance
+            if nearest <= tolerance:
+                on[k, side] += 1
+    return on

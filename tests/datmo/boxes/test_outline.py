@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from datmo.boxes.outline import group, outlines
+from datmo.boxes.outline import outlines
 from datmo.boxes.rectangle import extents
-from datmo.boxes.shape import Shape, shapes
+from datmo.boxes.shape import Shape, _on_sides, shapes
 
 
 def outline_plainly(points, sensor, most, step):
@@ -44,15 +44,6 @@ def test_equal_points_and_the_sensor_itself():
     assert outline[0, 0].tolist() == [3, 3]
 
 
-@settings(max_examples=30, deadline=None)
-@given(st.lists(st.integers(-1, 4), max_size=40))
-def test_group_lists_the_rows_of_each_cluster(labels):
-    label = np.array(labels, np.int32)
-    rows, starts = group(label, 5)
-    for k in range(5):
-        assert rows[starts[k] : starts[k + 1]].tolist() == np.flatnonzero(label == k).tolist()
-
-
 def side(a, b, n=20):
     return np.linspace(a, b, n)
 
@@ -77,3 +68,26 @@ def test_shapes_are_told_apart(shape, angle):
     outline = np.zeros((1, 64, 2))
     outline[0, : len(points)] = points
     assert shapes(outline, np.array([len(points)]), np.array([angle]), extent, 0.1).tolist() == [shape]
+
+
+def sides_plainly(outline, angle, extent, tolerance):
+    """Points on each side, one point and one side at a time."""
+    on = [0, 0, 0, 0]
+    for x, y in outline:
+        along, across = np.cos(angle) * x + np.sin(angle) * y, np.cos(angle) * y - np.sin(angle) * x
+        distance = [abs(v - e) for v, e in zip([along, along, across, across], extent, strict=True)]
+        if min(distance) <= tolerance:
+            on[distance.index(min(distance))] += 1
+    return on
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 2**32 - 1), st.lists(st.integers(0, 12), min_size=1, max_size=5))
+def test_points_are_counted_on_their_nearest_side(seed, lengths):
+    rng = np.random.default_rng(seed)
+    k = len(lengths)
+    outline, angle = rng.integers(-2, 3, (k, 12, 2)) / 2, rng.choice([0.0, 0.3, 1.2], k)
+    extent = np.tile([-1.0, 1.0, -0.5, 0.5], (k, 1))
+    on = _on_sides(outline, np.array(lengths), np.cos(angle), np.sin(angle), extent, 0.2)
+    for row, points, n, a, e in zip(on, outline, lengths, angle, extent, strict=True):
+        assert row.tolist() == sides_plainly(points[:n], a, e, 0.2)
