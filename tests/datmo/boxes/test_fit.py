@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from datmo.boxes import BoxConfig, FilterConfig, fit_boxes
 from datmo.boxes.config import Criterion
+from datmo.clusters import cluster
 from datmo.errors import MessageError
 from datmo.geometry import wrap_angle
 from datmo.messages import Clusters, Detections, Kind
@@ -20,7 +21,9 @@ CRITERIA = get_args(Criterion)
 OPEN = FilterConfig(
     points=1, length=(0, 1e6), width=(0, 1e6), height=(0, 1e6), area=(0, 1e9), volume=(0, 1e9)
 )
-ANYTHING = BoxConfig(filter=OPEN.model_copy(update={"ratio_above": 1e9, "density": 0.0}))
+ANYTHING = BoxConfig(
+    filter=OPEN.model_copy(update={"ratio_above": 1e9, "slender_height": 1e6, "density": 0.0})
+)
 
 
 def solid(center, size, yaw, seed=0, noise=0.0, slope=(0.0, 0.0)):
@@ -107,7 +110,13 @@ DEGENERATE = {
     "around the sensor": [[9, 0, 1], [0, 9, 1], [-9, 0, 1], [0, -9, 1]],
     "below the ground": [[5, 1, -2], [6, 1, -2]],
     "as big as the scene": np.random.default_rng(0).uniform(-80, 80, (20000, 3)),
+    "a pole": np.column_stack([np.full(30, 5.0), np.full(30, 1.0), np.linspace(0.3, 6, 30)]),
+    "along an axis": np.column_stack([np.linspace(5, 9, 40), np.full(40, 1.0), np.full(40, 1.0)]),
+    "a flat wall": np.random.default_rng(1).uniform(0, 2, (200, 3)) * [2, 0, 1] + [5, 1, 0.3],
+    "a hundred thousand in one cell": np.random.default_rng(2).uniform(1, 1.25, (100_000, 3)),
+    "a hundred thousand at one place": [[5, 1, 1]] * 100_000,
 }
+ACCEPTED = ("collinear", "along an axis", "a flat wall", "a hundred thousand in one cell")
 
 
 @pytest.mark.parametrize("criterion", CRITERIA)
@@ -125,8 +134,31 @@ def test_degenerate_clusters(case, criterion):
     c, s = np.cos(boxes.yaw[0]), np.sin(boxes.yaw[0])
     local = (points[:, :2] - boxes.center[0, :2]) @ np.array([[c, -s], [s, c]])
     assert np.all(np.abs(local) <= np.array([length, width]) / 2 + 1e-9)
-    _, refused = fit(points)[0], fit(points, config=BoxConfig())[1]
-    assert len(refused) == 1 or case == "collinear"
+    assert -np.pi / 2 <= boxes.yaw[0] < np.pi / 2
+    boxes, refused = fit(points, config=BoxConfig(criterion=criterion))
+    assert (len(boxes), len(refused)) == ((1, 0) if case in ACCEPTED else (0, 1))
+
+
+@pytest.mark.parametrize("criterion", CRITERIA)
+def test_degenerate_clusters_do_not_disturb_each_other(criterion):
+    config = ANYTHING.model_copy(update={"criterion": criterion})
+    few = [np.array(points, float) for points in DEGENERATE.values() if len(points) <= 200]
+    label = np.repeat(2 * np.arange(len(few)), [len(points) for points in few])  # odd ones have no point
+    together, rejections = fit(np.concatenate(few), label=label, config=config)
+    assert together.cluster.tolist() == list(range(0, 2 * len(few), 2))
+    assert [(r.cluster, r.rule) for r in rejections] == [(k, "points") for k in range(1, 2 * len(few) - 1, 2)]
+    for k, points in enumerate(few):
+        alone, _ = fit(points, config=config)
+        for name in ("center", "size", "yaw", "score", "cov", "seen", "shape", "kind"):
+            np.testing.assert_array_equal(getattr(together, name)[k], getattr(alone, name)[0])
+
+
+@pytest.mark.parametrize("criterion", CRITERIA)
+def test_a_hundred_thousand_points_of_one_cell_are_one_cluster_and_one_box(criterion):
+    points = np.array(DEGENERATE["a hundred thousand in one cell"])
+    clusters = cluster(points, points[:, 2], np.ones(len(points), bool))
+    boxes, _ = fit_boxes(points, clusters, np.zeros(len(points)), SENSOR, BoxConfig(criterion=criterion))
+    assert len(boxes) == clusters.count == 1
 
 
 def test_labels_boxes_and_rejections_account_for_each_other():
@@ -141,9 +173,11 @@ def test_labels_boxes_and_rejections_account_for_each_other():
     assert np.all((boxes.score > 0.9) & (boxes.score < 1))
 
 
-def test_no_clusters_no_boxes():
-    assert fit(np.zeros((0, 3))) == (Detections.empty(), ())
-    assert fit(np.ones((4, 3)), label=[-1] * 4) == (Detections.empty(), ())
+@pytest.mark.parametrize("criterion", CRITERIA)
+def test_no_clusters_no_boxes(criterion):
+    config = BoxConfig(criterion=criterion)
+    assert fit(np.zeros((0, 3)), config=config) == (Detections.empty(), ())
+    assert fit(np.ones((4, 3)), label=[-1] * 4, config=config) == (Detections.empty(), ())
 
 
 def test_bad_rows_are_refused():
