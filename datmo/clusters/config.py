@@ -13,6 +13,10 @@ class ClusterConfig(BaseModel):
     The cell follows the spacing of the returns. Along the ring an HDL-64 at 10 Hz fires every
     0.003 rad, so 0.008 rad holds two firings with one lost between them; along the ray the gaps
     are those between the laser rings on a bonnet or a roof, several times wider.
+
+    What hangs (a crown, a bridge, a sign) is parted from what stands below it by a gap of height. Rings
+    of an HDL-64 that look upward are 0.006 rad apart, so 0.015 holds two of them and some noise; a
+    sparser unit asks for more. No gap parts what begins below the headroom.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -25,7 +29,15 @@ class ClusterConfig(BaseModel):
     growth_across: float = Field(0.008, gt=0, description="width of a cell across the ray over its range [1]")
     max_range: float = Field(80.0, gt=0, description="points farther than this belong to no cluster [m]")
     min_height: float = Field(0.3, description="lowest height above the ground that links cells [m]")
-    max_height: float = Field(3.5, gt=0, description="points higher than this belong to no cluster [m]")
+    max_height: float = Field(
+        3.5, gt=0, description="points higher than this belong to no cluster; without layers [m]"
+    )
+    layers: bool = Field(True, description="part what hangs from what stands below it; in the polar grid")
+    gap: float = Field(0.3, gt=0, description="least gap of height under what hangs [m]")
+    gap_growth: float = Field(0.015, ge=0, description="least gap of height over its range [1]")
+    headroom: float = Field(
+        2.0, description="what begins lower than this above the ground stands on what is below it [m]"
+    )
 
 
 class MergeConfig(BaseModel):

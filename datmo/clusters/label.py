@@ -10,6 +10,7 @@ from datmo.arrays import I32, Array, Bool
 from datmo.clusters.config import ClusterConfig
 from datmo.clusters.connect import connect_plain, connect_polar
 from datmo.clusters.grid import PolarGrid, polar_grid
+from datmo.clusters.layers import find_layers, label_points
 from datmo.errors import MessageError
 from datmo.messages import Clusters
 
@@ -19,10 +20,11 @@ def cluster(
 ) -> Clusters:
     """Connected components of the cells that hold elevated points (method.md section 5, Alg. 8).
 
-    Points between `min_height` and `max_height` above the ground occupy cells and link them.
-    Lower ones (feet, tyres, kerbs) link nothing, but take the label of the cell they lie in;
-    higher ones (foliage, bridges) get none. So a kerb does not tie two cars together, nor a crown
-    a person to a tree.
+    Points from `min_height` above the ground on occupy cells and link them, layer by layer: what hangs
+    (foliage, bridges) does not link with what stands below it. Lower points (feet, tyres, kerbs) link
+    nothing, but take the label of what stands in their cell. So a kerb does not tie two cars together,
+    nor a crown a person to a tree. Without layers, which the plain grid never has, points higher than
+    `max_height` belong to no cluster instead.
 
     Args:
         points: (n, 3) [m], seen from the sensor: range is counted from the origin of x-y.
@@ -31,8 +33,8 @@ def cluster(
         config: settings.
 
     Returns:
-        Clusters, labelled by their lowest cell: the order of the points does not matter. Points
-        that are not finite, or out of range, have label -1.
+        Clusters, labelled by their lowest cell, then their lowest layer: the order of the points does not
+        matter. Points that are not finite, or out of range, have label -1.
 
     Raises:
         MessageError: the arrays do not have one row a point.
@@ -40,23 +42,21 @@ def cluster(
     config = config or ClusterConfig()
     points, height_above = np.asarray(points), np.asarray(height_above)
     _check(points, height_above, elevated)
-    taken = elevated & (height_above < config.max_height)
-    linking = height_above >= config.min_height
+    in_layers = config.layers and config.grid == "polar"
+    taken = elevated & (height_above < (np.inf if in_layers else config.max_height))
     components = _polar if config.grid == "polar" else _plain
-    label = components(points, taken, linking, config)
+    label = components(points, height_above, taken, config)
     return Clusters(label=label, count=int(label.max(initial=-1)) + 1)
 
 
-def _polar(points: Array, taken: Bool, linking: Bool, config: ClusterConfig) -> I32:
+def _polar(points: Array, height_above: Array, taken: Bool, config: ClusterConfig) -> I32:
     grid = _grid(config)
     cell = grid.locate(points, taken)
-    occupied = np.zeros(grid.size + 1, np.bool_)  # the last entry gathers what has no cell
-    occupied[np.where(linking, cell, -1)] = True
-    component = np.append(connect_polar(occupied[:-1], grid), np.int32(-1))
-    return np.asarray(component[cell])
+    layers = find_layers(cell, height_above, grid, config)
+    return label_points(connect_polar(layers, grid), layers, cell, height_above, config)
 
 
-def _plain(points: Array, taken: Bool, linking: Bool, config: ClusterConfig) -> I32:
+def _plain(points: Array, height_above: Array, taken: Bool, config: ClusterConfig) -> I32:
     label = np.full(len(points), -1, np.int32)
     half = int(np.ceil(config.max_range / config.cell))
     rows = np.flatnonzero(
@@ -64,7 +64,7 @@ def _plain(points: Array, taken: Bool, linking: Bool, config: ClusterConfig) -> 
     )
     column = np.floor(points[rows, :2] / config.cell).astype(np.int64) + half
     occupied = np.zeros((2 * half, 2 * half), np.bool_)
-    occupied[tuple(column[linking[rows]].T)] = True
+    occupied[tuple(column[height_above[rows] >= config.min_height].T)] = True
     label[rows] = connect_plain(occupied)[tuple(column.T)]
     return label
 

@@ -11,6 +11,7 @@ from datmo.clusters import ClusterConfig, cluster
 from datmo.errors import MessageError
 
 SENSOR = 1.73
+CONFIGS = [ClusterConfig(), ClusterConfig(layers=False), ClusterConfig(grid="plain")]
 AZIMUTH = np.deg2rad(0.173)
 ELEVATIONS = np.deg2rad(np.concatenate([np.linspace(2, -8.3, 32), np.linspace(-8.9, -24.3, 32)]))
 
@@ -83,23 +84,28 @@ def test_a_kerb_does_not_link_and_takes_the_label_of_its_cell():
     assert label[60] == -1
 
 
-def test_what_hangs_above_links_nothing():
+@pytest.mark.parametrize(
+    "config", [ClusterConfig(), ClusterConfig(layers=False), ClusterConfig(grid="plain", layers=True)]
+)
+def test_what_hangs_above_links_nothing(config):
     person = np.column_stack([np.full(20, 10.0), np.zeros(20), np.linspace(0.3, 1.8, 20)])
     trunk = person + np.array([0, 4, 0])
     crown = np.column_stack([np.full(200, 10.0), np.linspace(-1, 5, 200), np.full(200, 3.8)])
-    label, count = labels(np.concatenate([person, trunk, crown]) - [0, 0, SENSOR])
-    assert count == 2
-    assert np.all(label[40:] == -1)
+    label, count = labels(np.concatenate([person, trunk, crown]) - [0, 0, SENSOR], config)
+    in_layers = config.layers and config.grid == "polar"
+    assert count == (3 if in_layers else 2)
+    assert len(set(label[40:])) == 1
+    assert not set(label[:40]) & set(label[40:])
+    assert (label[40] == -1) == (not in_layers)
 
 
 @settings(max_examples=25, deadline=None)
-@given(st.integers(0, 2**32 - 1), st.sampled_from(["polar", "plain"]), st.integers(0, 600))
-def test_the_order_of_points_does_not_matter(seed, grid, n):
+@given(st.integers(0, 2**32 - 1), st.sampled_from(CONFIGS), st.integers(0, 600))
+def test_the_order_of_points_does_not_matter(seed, config, n):
     rng = np.random.default_rng(seed)
-    points = rng.normal(size=(n, 3)) * [20, 20, 1]
+    points = rng.normal(size=(n, 3)) * [20, 20, 2]
     height, elevated = points[:, 2] + 1, rng.random(n) < 0.8
     order = rng.permutation(n)
-    config = ClusterConfig(grid=grid)
     a = cluster(points, height, elevated, config)
     b = cluster(points[order], height[order], elevated[order], config)
     assert np.array_equal(a.label[order], b.label)
@@ -107,9 +113,8 @@ def test_the_order_of_points_does_not_matter(seed, grid, n):
     assert np.all(a.label[~elevated] == -1)
 
 
-@pytest.mark.parametrize("grid", ["polar", "plain"])
-def test_degenerate_clouds(grid):
-    config = ClusterConfig(grid=grid)
+@pytest.mark.parametrize("config", CONFIGS)
+def test_degenerate_clouds(config):
     assert labels(np.zeros((0, 3)), config)[1] == 0
     assert labels(np.array([[5.0, 0, 0]]), config)[0].tolist() == [0]
     bad = np.array([[np.nan, 0, 0], [5, np.inf, 0], [5, 0, np.nan], [5, 0, 0], [500, 0, 0], [0, -80.0, 0]])
@@ -117,6 +122,24 @@ def test_degenerate_clouds(grid):
     label, count = labels(np.full((100_000, 3), 7.0) * [1, 1, 0], config)
     assert count == 1
     assert not label.any()
+
+
+@pytest.mark.parametrize("config", CONFIGS)
+def test_one_cell_and_one_cluster_of_a_hundred_thousand_points(config):
+    rng = np.random.default_rng(0)
+    cell = np.array([7.0, 7, 0.5 - SENSOR]) + rng.random((100_000, 3)) * [0.01, 0.01, 1.5]
+    assert labels(cell, config)[1] == 1
+    scene = rng.uniform([-50, -50, 0.3 - SENSOR], [50, 50, 3.4 - SENSOR], (400_000, 3))
+    label, _ = labels(scene, config)
+    assert np.bincount(label[label >= 0]).max() > 0.9 * len(scene)
+
+
+@pytest.mark.parametrize("config", CONFIGS)
+@pytest.mark.parametrize("height", [np.nan, np.inf, -np.inf])
+def test_a_height_that_is_no_number_gives_no_label_and_ties_nothing(config, height):
+    points = np.array([[5.0, 0, 0], [5, 0.6, 0], [5, 0.3, 0]])
+    found = cluster(points, np.array([1.0, 1.0, height]), np.ones(3, bool), config)
+    assert found.label.tolist() == [0, 1, -1]
 
 
 def test_rows_must_agree():

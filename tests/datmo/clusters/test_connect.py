@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from datmo.clusters.config import ClusterConfig
 from datmo.clusters.connect import connect_plain, connect_polar
 from datmo.clusters.grid import PolarGrid, polar_grid
+from datmo.clusters.layers import BIN, find_layers
 
 
 def flood_fill(occupied, neighbours):
@@ -56,16 +57,32 @@ def small_grid(columns):
 
 GRIDS = [small_grid(c) for c in ([3, 7, 7, 12, 12], [1, 1, 4, 9, 16], [2, 5, 31], [9, 8, 8, 3])]
 NEIGHBOURS = [touching(g) for g in GRIDS]
+HEADROOM = 17  # the bin that begins 2.0 m above the ground, where bin 0 begins at 0.3 m
+
+
+def apart(above, below):
+    """Whether a layer (lowest bin, highest bin, gap) hangs free above another one."""
+    return above[0] >= HEADROOM and above[0] - below[1] - 1 >= above[2]
 
 
 @settings(max_examples=150, deadline=None)
-@given(st.integers(0, len(GRIDS) - 1), st.integers(0, 2**32 - 1), st.floats(0.05, 0.8))
-def test_polar_components_are_those_of_a_flood_fill(which, seed, share):
-    grid = GRIDS[which]
-    occupied = np.random.default_rng(seed).random(grid.size) < share
-    expected = flood_fill(set(np.flatnonzero(occupied).tolist()), lambda c: NEIGHBOURS[which][c])
-    got = connect_polar(occupied, grid)
-    assert got.tolist() == [expected.get(c, -1) for c in range(grid.size)]
+@given(st.integers(0, len(GRIDS) - 1), st.integers(0, 2**32 - 1), st.floats(0.05, 2.5), st.booleans())
+def test_polar_components_are_those_of_a_flood_fill(which, seed, share, layers):
+    grid, rng = GRIDS[which], np.random.default_rng(seed)
+    config = ClusterConfig(gap=0.3, gap_growth=0.15, headroom=2.0, layers=layers)
+    cell = rng.integers(0, grid.size, int(share * grid.size)).astype(np.int32)
+    found = find_layers(cell, rng.uniform(0.3, 7, len(cell)), grid, config)
+    ring = np.searchsorted(grid.first, found.cell, side="right") - 1
+    gap = np.ceil(np.maximum(0.3, 0.15 * grid.edges[ring + 1]) / BIN)
+    span = list(zip(found.low, found.high, gap, strict=True))
+    own = [range(found.first[c], found.first[c + 1]) for c in range(grid.size)]
+
+    def neighbours(k):
+        beside = (other for c in NEIGHBOURS[which][found.cell[k]] for other in own[c])
+        return [j for j in beside if not (layers and (apart(span[k], span[j]) or apart(span[j], span[k])))]
+
+    expected = flood_fill(set(range(len(span))), neighbours)
+    assert connect_polar(found, grid).tolist() == [expected[k] for k in range(len(span))]
 
 
 @settings(max_examples=50, deadline=None)
