@@ -8,39 +8,59 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
+from pydantic import BaseModel, ConfigDict, Field
 
 from datmo.arrays import F32, F64, I32, I64
 from datmo.messages import Boxes, Clusters, Scan
 
-PAD = 0.5  # [m] how far the middle of a cluster may lie outside the predicted box
-SLOWEST = 0.5  # [m/s]; a box predicted to move less stands
+
+class CarryConfig(BaseModel):
+    """Frozen; an unknown key is an error."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    enabled: bool = Field(True, description="whether points are carried at all")
+    pad: float = Field(0.5, gt=0, description="a cluster's middle may lie this far outside the box [m]")
+    slowest: float = Field(0.5, ge=0, description="a box predicted to move no faster stands [m/s]")
 
 
-def carry(places: F64, scan: Scan, clusters: Clusters, predicted: Boxes) -> F64:
+def carry(
+    places: F64, scan: Scan, clusters: Clusters, predicted: Boxes, config: CarryConfig | None = None
+) -> F64:
     """The points as they would lie had all been measured at the stamp.
 
     A cluster moves with the predicted box that it lies deepest in, at the time that it was scanned.
 
     Args:
         places: (n, 3) points of the scan [m, world]. predicted: boxes expected at the stamp [world].
+        config: settings.
 
     Returns:
         (n, 3) [m, world]; `places` itself where nothing moves.
     """
+    config = config or CarryConfig()
     speed = np.linalg.norm(predicted.velocity, axis=1)
-    moving = predicted.select(speed > SLOWEST)  # NaN compares False
-    if len(moving) == 0 or clusters.count == 0 or not scan.dt.any():
+    moving = predicted.select(speed > config.slowest)  # NaN compares False
+    if not config.enabled or len(moving) == 0 or clusters.count == 0 or not scan.dt.any():
         return places
     owner = _owners(
         places, scan.dt, clusters.label, clusters.count,
-        moving.center, moving.size, moving.yaw, moving.velocity,
+        moving.center, moving.size, moving.yaw, moving.velocity, config.pad,
     )  # fmt: skip
     return np.asarray(_carried(places, scan.dt, clusters.label, owner, moving.velocity))
 
 
 @njit(cache=True, nogil=True)
 def _owners(
-    places: F64, dt: F32, label: I32, count: int, center: F64, size: F64, yaw: F64, velocity: F64
+    places: F64,
+    dt: F32,
+    label: I32,
+    count: int,
+    center: F64,
+    size: F64,
+    yaw: F64,
+    velocity: F64,
+    pad: float,
 ) -> I64:
     """The box (count,) that each cluster moves with, -1 none."""
     mean, number = np.zeros((count, 3)), np.zeros(count)
@@ -61,7 +81,7 @@ def _owners(
             dx, dy = x - center[b, 0] - velocity[b, 0] * t, y - center[b, 1] - velocity[b, 1] * t
             c, s = np.cos(yaw[b]), np.sin(yaw[b])
             along, across = abs(c * dx + s * dy), abs(c * dy - s * dx)
-            depth = max(along / (size[b, 0] / 2 + PAD), across / (size[b, 1] / 2 + PAD))
+            depth = max(along / (size[b, 0] / 2 + pad), across / (size[b, 1] / 2 + pad))
             if depth < deepest:
                 deepest, owner[k] = depth, b
     return owner

@@ -5,7 +5,8 @@ from __future__ import annotations
 from pydantic import BaseModel, ConfigDict
 
 from datmo.boxes import BoxConfig
-from datmo.clusters import ClusterConfig, MergeConfig
+from datmo.carry import CarryConfig
+from datmo.clusters import ClusterConfig, MergeConfig, SplitConfig
 from datmo.errors import ConfigError, nearest
 from datmo.ground import METHODS, GroundConfig
 from datmo.refine import RefineConfig
@@ -20,6 +21,8 @@ class DatmoConfig(BaseModel):
     refine: RefineConfig = RefineConfig()
     ground: GroundConfig = GroundConfig()
     clusters: ClusterConfig = ClusterConfig()
+    split: SplitConfig = SplitConfig()
+    carry: CarryConfig = CarryConfig()
     merge: MergeConfig = MergeConfig()
     boxes: BoxConfig = BoxConfig()
     tracks: TrackerConfig = TrackerConfig()

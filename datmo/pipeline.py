@@ -9,7 +9,7 @@ import numpy as np
 from datmo.arrays import F64
 from datmo.boxes import fit_boxes
 from datmo.carry import carry
-from datmo.clusters import cluster, merge_clusters
+from datmo.clusters import cluster, merge_clusters, split_clusters
 from datmo.config import DatmoConfig
 from datmo.geometry import transform
 from datmo.ground import GroundSegmenter
@@ -50,7 +50,9 @@ class Datmo:
         elevated = keep & ~ground.is_ground
         clusters = cluster(scan.points, height_above, elevated, self.config.clusters)
         predicted = self.tracker.predicted(scan.stamp)
-        places = carry(transform(scan.T_world_sensor, scan.points), scan, clusters, predicted)
+        places = transform(scan.T_world_sensor, scan.points)
+        clusters = split_clusters(places, clusters, predicted, scan.dt, self.config.split)
+        places = carry(places, scan, clusters, predicted, self.config.carry)
         clusters = merge_clusters(places, clusters, predicted, self.config.merge)
         clock.lap("clusters")
         boxes, rejected = fit_boxes(

@@ -45,9 +45,25 @@ class MergeConfig(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
+    enabled: bool = Field(True, description="whether clusters are merged at all")
     share: float = Field(
         0.5, ge=0, le=1, description="overlap over the smaller area that makes a candidate [1]"
     )
     area_factor: float = Field(1.3, gt=0, description="largest merged area over the predicted area [1]")
     tolerance: float = Field(0.4, ge=0, description="how far the merged size may exceed the predicted [m]")
     pad: float = Field(0.1, gt=0, description="least extent of a footprint, so that a line has an area [m]")
+
+
+class SplitConfig(BaseModel):
+    """When a cluster that several predicted boxes share is cut (under-segmentation)."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    enabled: bool = Field(True, description="whether clusters are cut at all")
+    tolerance: float = Field(
+        0.3, gt=0, description="a point this far outside a predicted box may still be its own [m]"
+    )
+    points: int = Field(5, ge=1, description="least number of points that make a box's claim")
+    explained: float = Field(
+        0.7, gt=0, le=1, description="a claim of which another box holds this share is none [1]"
+    )

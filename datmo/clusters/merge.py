@@ -20,8 +20,9 @@ def merge_clusters(
 
     The footprint of a cluster is its extent along the predicted box's own axes. A cluster is a
     candidate of a box when they share more than `share` of the smaller of the two areas; where
-    several boxes claim it, the one that shares most keeps it, so clusters that two tracks claim
-    never merge. Candidates join, the one with the largest overlap first, as long as the merged
+    several boxes claim it, the one that shares most keeps it, of those that hold it whole the one
+    whose middle it is nearest to by that box's own measure, so clusters that two tracks claim never
+    merge. Candidates join, the one with the largest overlap first, as long as the merged
     footprint does not exceed the predicted box (area factor and dimensions within tolerance).
 
     Args:
@@ -42,7 +43,7 @@ def merge_clusters(
             f"merge_clusters was given {len(points_world)} points and {len(clusters.label)} labels; "
             "both must have one row a point; give the points the clusters were made from"
         )
-    if len(predicted) == 0 or clusters.count < 2:
+    if not config.enabled or len(predicted) == 0 or clusters.count < 2:
         return clusters
     return _relabel(
         clusters, _targets(footprints(points_world, clusters, predicted, config.pad), predicted, config)
@@ -54,7 +55,10 @@ def _targets(extent: F64, predicted: Boxes, config: MergeConfig) -> Array:
     half = predicted.size[:, [0, 0, 1, 1]] / 2 * np.array([-1, 1, -1, 1])
     overlap = _area(_intersection(extent, half[:, None]))
     share = overlap / np.maximum(np.minimum(_area(extent), _area(half)[:, None]), 1e-9)
-    owner = np.argmax(share, axis=0)
+    middle = np.abs(extent[..., 0::2] + extent[..., 1::2]) / 2
+    offset = (middle / np.maximum(half[:, None, 1::2], 1e-9)).max(-1)  # 1 at the box's edge
+    most = share >= share.max(axis=0) - 1e-9
+    owner = np.argmin(np.where(most, offset, np.inf), axis=0)
     target = np.arange(extent.shape[1])
     for box in range(len(predicted)):
         members = np.flatnonzero((owner == box) & (share[box] > config.share))

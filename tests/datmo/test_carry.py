@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from datmo.carry import PAD, carry
+from datmo.carry import CarryConfig, carry
 from datmo.messages import Boxes, Clusters, Scan
 
 VELOCITY = np.array([12.0, -5.0])
@@ -38,6 +38,7 @@ def test_what_stands_or_is_unknown_stays():
     assert carry(seen, scan, clusters, boxes.select([1])) is seen
     assert carry(seen, scan, clusters, Boxes.empty()) is seen
     assert carry(seen, Scan(points=seen), clusters, boxes) is seen  # no firing times: a plain cloud
+    assert carry(seen, scan, clusters, boxes, CarryConfig(enabled=False)) is seen
     unknown = Boxes(boxes.center, boxes.size, boxes.yaw)
     assert carry(seen, scan, clusters, unknown) is seen
     nothing = Clusters(np.full(len(seen), -1, np.int32), 0)
@@ -68,7 +69,7 @@ def test_a_cluster_moves_with_the_box_it_lies_deepest_in():
                 d = middle - boxes.center[i, :2] - boxes.velocity[i] * t
                 u, w = np.cos(boxes.yaw[i]), np.sin(boxes.yaw[i])
                 inside = np.abs([u * d[0] + w * d[1], u * d[1] - w * d[0]])
-                depth = (inside / (boxes.size[i, :2] / 2 + PAD)).max()
+                depth = (inside / (boxes.size[i, :2] / 2 + CarryConfig().pad)).max()
                 if depth < best and np.linalg.norm(boxes.velocity[i]) > 0.5:
                     best, owner = depth, i
             if owner is not None:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from datmo import Datmo, Scan
+from datmo.clusters import SplitConfig
 from datmo.config import DatmoConfig
 from datmo.errors import ConfigError
 from datmo.geometry import transform
@@ -88,6 +89,27 @@ def test_points_that_are_not_finite_are_left_out() -> None:
     assert not frame.ground.is_ground[::10].any()
     assert (frame.clusters.label[::10] == -1).all()
     assert frame.ground.is_ground[1::10].mean() > 0.9
+
+
+def passing(split: bool) -> list[bool]:
+    """Two persons pass each other at 0.4 m: in which scans most of both lies in one cluster."""
+    rng = np.random.default_rng(4)
+    ground = np.c_[rng.uniform(-25, 25, (6000, 2)), np.full(6000, -1.7)]
+    body = rng.uniform([-0.2, -0.25, -1.65], [0.2, 0.25, 0.0], (120, 3))
+    datmo = Datmo(DatmoConfig(split=SplitConfig(enabled=split)))
+    together = []
+    for k in range(41):
+        y = 0.13 * (k - 20)
+        points = np.concatenate([ground, body + np.array([8, y, 0]), body[:90] + np.array([8.8, -y, 0])])
+        label = datmo.step(Scan(points=points, stamp=k / 10)).clusters.label[len(ground) :]
+        main = [np.bincount(own[own >= 0]).argmax() for own in (label[:120], label[120:])]
+        together.append(bool(main[0] == main[1]))
+    return together
+
+
+def test_two_tracks_that_meet_come_apart() -> None:
+    assert sum(passing(split=False)) >= 5
+    assert not any(passing(split=True))
 
 
 def test_ground_below_is_the_ground_in_the_world() -> None:

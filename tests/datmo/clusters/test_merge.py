@@ -71,6 +71,17 @@ def test_two_clusters_that_two_tracks_claim_never_merge():
     assert merge_clusters(points, clusters, CAR).count == 1
 
 
+@pytest.mark.parametrize("order", [[0, 1], [1, 0]])
+def test_what_lies_in_two_boxes_goes_to_the_one_it_is_nearest_to(order):
+    # a person in two halves whose box lies within the box of a car, at its edge
+    points, clusters = scene(
+        patch(-2.2, 0.4, -0.9, 0.9), patch(1.6, 1.8, -0.2, 0.2, n=20), patch(1.9, 2.1, -0.2, 0.2, n=20)
+    )
+    c, s = 1.85 * np.cos(YAW), 1.85 * np.sin(YAW)
+    boxes = box((20, 5, 4.6, 1.9), (20 + c, 5 + s, 0.6, 0.6)).select(np.array(order))
+    assert merge_clusters(points, clusters, boxes).label.tolist() == [0] * 60 + [1] * 40
+
+
 def test_little_overlap_is_no_candidate():
     points, clusters = scene(patch(-2.2, 0, -0.9, 0.9), patch(0.1, 1.0, 0.6, 1.8))
     assert merge_clusters(points, clusters, box((20, 5, 4.4, 2.8))).count == 1
@@ -109,6 +120,8 @@ def test_footprints_are_the_extents_along_the_box():
 def test_nothing_predicted_or_nothing_seen():
     points, clusters = scene(patch(-1, 1, -1, 1), patch(3, 4, -1, 1))
     assert merge_clusters(points, clusters, Boxes.empty()) == clusters
+    halves, apart = scene(patch(-2, -0.6, -0.9, 0.9), patch(0.2, 2, -0.9, 0.9))
+    assert merge_clusters(halves, apart, CAR, MergeConfig(enabled=False)) == apart
     nothing = Clusters(label=np.full(5, -1), count=0)
     assert merge_clusters(np.full((5, 3), np.nan), nothing, CAR) == nothing
     with pytest.raises(MessageError, match="one row a point"):
