@@ -8,6 +8,7 @@ import typer
 
 from datmo.errors import ConfigError
 from eval.commands import options as o
+from eval.commands.benchmark_boxes import boxes
 from eval.commands.benchmark_detection import detection
 from eval.commands.benchmark_ground import ground
 from eval.commands.benchmark_lines import lines
@@ -28,6 +29,7 @@ def group() -> None:
     """Time this project beside a rival, interleaved in one process."""
 
 
+benchmark.command("boxes")(boxes)
 benchmark.command("detection")(detection)
 benchmark.command("ground")(ground)
 benchmark.command("lines")(lines)
