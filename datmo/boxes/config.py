@@ -20,6 +20,9 @@ class FilterConfig(BaseModel):
     its tram of 35 m), with room for mirrors, noise and an error of the ground. Lower limits only refuse
     what no road user shows, however much of it is hidden: widths of nothing are legal, for one side seen
     alone is a line.
+    No road user floats: the underside of a trailer is 1.2 m high at most. What hides its lower part,
+    though, hides it up to the height of an HDL-64 on a car's roof (1.73 m), unless it is itself higher,
+    so that is how high a seen part may begin.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -62,6 +65,9 @@ class FilterConfig(BaseModel):
         0.3,
         description="least number of points per m³; an HDL-64E sees the rear of a 16.5 m lorry at 60 m with "
         "14 columns and 11 rings, 0.9 of its volume; half may be lost",
+    )
+    clearance: float = Field(
+        1.8, description="largest height of the lowest point above the ground [m]; foliage and signs float"
     )
     points: int = Field(5, ge=1, description="least number of points; scoring asks for objects with 5")
 

@@ -52,21 +52,21 @@ def fit_boxes(
     config = config or BoxConfig()
     points, ground = np.asarray(points_world, float), np.asarray(ground_z, float)
     _check(points, clusters, ground)
-    found, number = _fit(points, ground, clusters, np.asarray(sensor_xy, float), config)
-    passed, rejections = apply_rules(found.visible().size, number, config.filter)
+    found, number, clearance = _fit(points, ground, clusters, np.asarray(sensor_xy, float), config)
+    passed, rejections = apply_rules(found.visible().size, number, clearance, config.filter)
     return found.select(passed), rejections
 
 
 def _fit(
     points: F64, ground: F64, clusters: Clusters, sensor_xy: F64, config: BoxConfig
-) -> tuple[Detections, I64]:
-    """The box and the number of points of each cluster, whatever they are."""
+) -> tuple[Detections, I64, F64]:
+    """The box, the number of points and the clearance [m] of each cluster, whatever they are."""
     points, ground, starts = gather(points, ground, clusters.label, clusters.count)
     number, step = np.diff(starts), np.deg2rad(config.outline_step)
     outline, length = outlines(points, starts, sensor_xy, config.outline_points, step)
     angle = _angles(points, starts, outline, length, config)
     extent = extents(points, starts, angle)
-    base, top = heights(points[:, 2], ground, starts)
+    base, top, clearance = heights(points[:, 2], ground, starts)
     height = np.maximum(top - base, 0)
     whole = complete(extent, height, to_axes(sensor_xy, angle), config.complete)
     boxes = upright(extent, whole, angle)
@@ -82,7 +82,7 @@ def _fit(
         shape=shapes(outline, length, angle, extent, config.side_tolerance),
         cluster=np.arange(clusters.count),
     )
-    return found, number
+    return found, number, clearance
 
 
 def _angles(points: F64, starts: I64, outline: F64, length: I64, config: BoxConfig) -> F64:

@@ -44,15 +44,19 @@ def first_bad(points: F64, ground: F64, label: I32) -> int:
     return -1
 
 
-def heights(z: F64, ground: F64, starts: I64) -> tuple[F64, F64]:
-    """Mean ground and highest point (k,) of each cluster [m]; 0 for a label without points.
+def heights(z: F64, ground: F64, starts: I64) -> tuple[F64, F64, F64]:
+    """Mean ground and highest point of each cluster, and its lowest point above the ground (k,) [m].
+
+    0 for a label without points.
 
     Args:
         z, ground: (m,) [m], cluster by cluster. starts: (k + 1,).
     """
     number = np.diff(starts)
-    base, top, held = np.zeros(len(number)), np.zeros(len(number)), np.flatnonzero(number)
+    base, top, clearance = np.zeros((3, len(number)))
+    held = np.flatnonzero(number)
     if len(held):
         base[held] = np.add.reduceat(ground, starts[held]) / number[held]
         top[held] = np.maximum.reduceat(z, starts[held])
-    return base, top
+        clearance[held] = np.minimum.reduceat(z - ground, starts[held])
+    return base, top, clearance

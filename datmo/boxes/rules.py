@@ -30,17 +30,20 @@ class Rejection:
         return f"cluster {self.cluster}: {self.rule} {self.value:.4g} {relation} {self.limit:.4g}"
 
 
-def apply_rules(size: F64, points: I64, config: FilterConfig) -> tuple[Bool, tuple[Rejection, ...]]:
+def apply_rules(
+    size: F64, points: I64, clearance: F64, config: FilterConfig
+) -> tuple[Bool, tuple[Rejection, ...]]:
     """Which boxes pass every rule, and for each other one the first rule that it breaks.
 
     Args:
         size: (k, 3) length, width, height [m]; row = cluster label.
         points: (k,) number of points of each cluster.
+        clearance: (k,) height of its lowest point above the ground [m].
         config: the limits.
     """
     broken = np.zeros(len(size), np.bool_)
     rejections: list[Rejection] = []
-    for rule, value, (low, high) in _rules(size, points, config):
+    for rule, value, (low, high) in _rules(size, points, clearance, config):
         with np.errstate(invalid="ignore"):
             outside = ~broken & ((value < low) | (value > high))
         for k in np.flatnonzero(outside):
@@ -50,7 +53,9 @@ def apply_rules(size: F64, points: I64, config: FilterConfig) -> tuple[Bool, tup
     return ~broken, tuple(sorted(rejections, key=lambda r: r.cluster))
 
 
-def _rules(size: F64, points: I64, config: FilterConfig) -> tuple[tuple[str, F64, tuple[float, float]], ...]:
+def _rules(
+    size: F64, points: I64, clearance: F64, config: FilterConfig
+) -> tuple[tuple[str, F64, tuple[float, float]], ...]:
     """Name, value (k,) and limits of each rule, in the order of checking; NaN is not checked."""
     length, width, height = size.T
     area = length * width
@@ -68,5 +73,6 @@ def _rules(size: F64, points: I64, config: FilterConfig) -> tuple[tuple[str, F64
         ("area", area, config.area),
         ("ratio", ratio, config.ratio),
         ("slender height", np.where(slender, height, np.nan), (0.0, config.slender_height)),
+        ("clearance", clearance, (-np.inf, config.clearance)),
         ("density", density, (config.density, np.inf)),
     )

@@ -19,7 +19,7 @@ from datmo.messages import Clusters, Detections, Kind
 SENSOR = np.zeros(2)
 CRITERIA = get_args(Criterion)
 OPEN = FilterConfig(
-    points=1, length=(0, 1e6), width=(0, 1e6), height=(0, 1e6), area=(0, 1e9), volume=(0, 1e9)
+    points=1, length=(0, 1e6), width=(0, 1e6), height=(0, 1e6), area=(0, 1e9), volume=(0, 1e9), clearance=1e9
 )
 ANYTHING = BoxConfig(
     filter=OPEN.model_copy(update={"ratio_above": 1e9, "slender_height": 1e6, "density": 0.0})
@@ -171,6 +171,16 @@ def test_labels_boxes_and_rejections_account_for_each_other():
     assert [(r.cluster, r.rule) for r in rejections] == [(0, "length"), (3, "points")]
     np.testing.assert_allclose(boxes.center[1] - boxes.center[0], [10, 0, 0], atol=0.1)
     assert np.all((boxes.score > 0.9) & (boxes.score < 1))
+
+
+def test_a_crown_above_the_ground_is_refused_and_a_van_on_a_hill_is_not():
+    crown, ground = solid((14, 5), (3.0, 2.5, 3.5), 0.35, slope=(0.2, 0.1))
+    high = crown[:, 2] - ground > 2.1
+    assert len(fit(crown, ground, config=BoxConfig())[0]) == 1
+    boxes, (rejection,) = fit(crown[high], ground[high], config=BoxConfig())
+    assert len(boxes) == 0
+    assert rejection.rule == "clearance"
+    assert rejection.value == pytest.approx((crown[:, 2] - ground)[high].min())
 
 
 @pytest.mark.parametrize("criterion", CRITERIA)

@@ -18,7 +18,7 @@ def test_each_cluster_has_its_points_in_their_order(label):
     rng = np.random.default_rng(len(label))
     points, ground = rng.normal(size=(len(label), 3)), rng.normal(size=len(label))
     gathered, below, starts = gather(points, ground, label, 5)
-    base, top = heights(gathered[:, 2], below, starts)
+    base, top, clearance = heights(gathered[:, 2], below, starts)
     assert len(gathered) == len(below) == starts[-1] == np.sum(label >= 0)
     for k in range(5):
         rows, part = np.flatnonzero(label == k), slice(starts[k], starts[k + 1])
@@ -26,6 +26,7 @@ def test_each_cluster_has_its_points_in_their_order(label):
         assert np.array_equal(below[part], ground[rows])
         assert base[k] == pytest.approx(ground[rows].mean() if len(rows) else 0)
         assert top[k] == (points[rows, 2].max() if len(rows) else 0)
+        assert clearance[k] == ((points[rows, 2] - ground[rows]).min() if len(rows) else 0)
 
 
 @settings(max_examples=100, deadline=None)

@@ -11,8 +11,10 @@ from datmo.boxes.rules import apply_rules
 ENOUGH = 60
 
 
-def judge(size, points=ENOUGH, **limits):
-    kept, rejections = apply_rules(np.array([size], float), np.array([points]), FilterConfig(**limits))
+def judge(size, points=ENOUGH, clearance=0.3, **limits):
+    kept, rejections = apply_rules(
+        np.array([size], float), np.array([points]), np.array([clearance]), FilterConfig(**limits)
+    )
     assert bool(kept[0]) == (not rejections)
     return rejections[0] if rejections else None
 
@@ -67,6 +69,13 @@ def test_each_rule_names_itself_its_value_and_its_limit(rule, size, points, limi
     assert f"{rule} {value:.4g}" in str(rejection)
 
 
+def test_what_floats_is_refused_and_what_an_occluder_left_is_not():
+    rejection = judge((2.0, 1.5, 2.9), clearance=2.4)
+    assert (rejection.rule, rejection.value, rejection.limit) == ("clearance", 2.4, 1.8)
+    assert judge((0.5, 0.4, 1.75), clearance=1.4) is None  # head and shoulders behind a car
+    assert judge((8.0, 2.5, 3.8), clearance=1.6) is None  # a lorry behind it
+
+
 def test_the_ratio_is_checked_only_above_its_length():
     assert judge((8.9, 0.1, 2)) is None
     assert judge((9.1, 0.1, 2)).rule == "ratio"
@@ -81,7 +90,7 @@ def test_every_box_is_kept_or_named_once():
     rng = np.random.default_rng(0)
     size = np.sort(rng.uniform(0, 8, (200, 2)))[:, ::-1]
     size = np.column_stack([size, rng.uniform(0, 6, 200)])
-    kept, rejections = apply_rules(size, rng.integers(1, 40, 200), FilterConfig())
+    kept, rejections = apply_rules(size, rng.integers(1, 40, 200), rng.uniform(0, 3, 200), FilterConfig())
     assert sorted([*np.flatnonzero(kept), *(r.cluster for r in rejections)]) == list(range(200))
     assert 20 < kept.sum() < 180
     assert [r.cluster for r in rejections] == sorted(r.cluster for r in rejections)
