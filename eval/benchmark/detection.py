@@ -21,10 +21,16 @@ from eval.pool import run_all
 from scenarios.load import load
 
 ABLATIONS: Mapping[str, Mapping[str, Any]] = {
-    "feedback of the tracker": {"merge": {"share": 1.0}},
+    "feedback of the tracker": {
+        "split": {"enabled": False}, "carry": {"enabled": False}, "merge": {"enabled": False},
+    },
+    "merging": {"merge": {"enabled": False}},
+    "splitting": {"split": {"enabled": False}},
+    "carrying to the stamp": {"carry": {"enabled": False}},
+    "whole boxes": {"boxes": {"complete": {"kinds": ()}}},
     "cells that grow with range": {"clusters": {"grid": "plain"}},
     "closeness (area instead)": {"boxes": {"criterion": "area"}},
-}
+}  # fmt: skip
 """Settings, stage by stage, that switch one idea off."""
 
 

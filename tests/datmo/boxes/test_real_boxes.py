@@ -7,7 +7,7 @@ import pytest
 
 from datmo.boxes import fit_boxes
 from datmo.clusters import cluster
-from datmo.geometry import inverse
+from datmo.geometry import corners_bev, inverse, overlap_bev
 from datmo.ground import segment_ground
 
 MARGIN = 0.1  # labels are drawn tightly [m]
@@ -63,6 +63,9 @@ def test_labelled_objects_with_fifty_returns_are_in_one_cluster_with_a_box(real_
         assert largest in kept, name
         row = int(np.flatnonzero(kept == largest)[0])
         assert np.sum(clusters.label == largest) <= 1.2 * own.sum() + 30, f"{name} is tied to something else"
+        label = corners_bev(base[None], np.array([size]), np.array([yaw]))[0]
+        box = corners_bev(boxes.center, boxes.size, boxes.yaw)[row]
+        assert overlap_bev(box, label) > 0, f"the box of {name} lies elsewhere"
         assert np.all(boxes.size[row] <= np.array([max(size[:2]), max(size[:2]), size[2]]) + 0.4), name
     assert met >= 1
 
