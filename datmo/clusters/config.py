@@ -64,6 +64,11 @@ class SplitConfig(BaseModel):
         0.3, gt=0, description="a point this far outside a predicted box may still be its own [m]"
     )
     points: int = Field(5, ge=1, description="least number of points that make a box's claim")
+    apart: float = Field(
+        0.7,
+        ge=0,
+        description="two moving boxes whose velocities differ by less may be parts of one body [m/s]",
+    )
     explained: float = Field(
         0.7, gt=0, le=1, description="a claim of which another box holds this share is none [1]"
     )

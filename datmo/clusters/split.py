@@ -23,7 +23,8 @@ def split_clusters(
     A point belongs to the predicted box that it lies deepest in, or nearest to, no farther than
     `tolerance`; a box is where it was when the point was measured. A box claims a cluster when
     enough of its points belong to it, and most of them lie in no other box: so neither a track that
-    repeats another, nor one of a part, cuts the whole. Where several boxes claim a cluster, each
+    repeats another, nor one of a part, cuts the whole. Of boxes that move alike only the first claims:
+    they may be parts of one body that was seen between poles. Where several boxes claim a cluster, each
     of its points goes to the nearest of them.
 
     Args:
@@ -53,7 +54,8 @@ def split_clusters(
     where = (predicted.center, predicted.size, predicted.yaw, steps)
     owner = _owners(points, when, clusters.label, *where, config.tolerance)
     part = np.zeros(n, np.int64)
-    for c, boxes in _contested(clusters.label, owner, len(predicted), config.points):
+    for c, claimants in _contested(clusters.label, owner, len(predicted), config.points):
+        boxes = _bodies(steps, claimants, config.apart)
         rows = np.flatnonzero(clusters.label == c)
         distance = np.asarray(_distances(points[rows], when[rows], *(a[boxes] for a in where)))
         part[rows] = cut(distance, config)
@@ -71,6 +73,16 @@ def cut(distance: F64, config: SplitConfig) -> I64:
     if claims.sum() < 2:
         return np.zeros(len(distance), np.int64)
     return distance[:, claims].argmin(1)
+
+
+def _bodies(velocity: F64, boxes: I64, least: float) -> I64:
+    """The boxes without those that move as one before them does, which may be of another part of one body."""
+    kept: list[int] = []
+    for b in boxes.tolist():
+        moves = np.hypot(*velocity[b]) >= least
+        if not moves or all(np.hypot(*(velocity[b] - velocity[a])) >= least for a in kept):
+            kept.append(b)
+    return np.array(kept, np.int64)
 
 
 def _contested(label: I32, owner: I64, boxes: int, least: int) -> list[tuple[int, I64]]:

@@ -100,7 +100,7 @@ def passing(split: bool) -> list[bool]:
     together = []
     for k in range(41):
         y = 0.13 * (k - 20)
-        points = np.concatenate([ground, body + np.array([8, y, 0]), body[:90] + np.array([8.8, -y, 0])])
+        points = np.concatenate([ground, body + np.array([8.1, y, 0]), body[:90] + np.array([8.9, -y, 0])])
         label = datmo.step(Scan(points=points, stamp=k / 10)).clusters.label[len(ground) :]
         main = [np.bincount(own[own >= 0]).argmax() for own in (label[:120], label[120:])]
         together.append(bool(main[0] == main[1]))

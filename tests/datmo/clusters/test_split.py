@@ -80,6 +80,15 @@ def test_a_lorry_with_one_box_stays_whole():
     assert split_clusters(points, clusters, cab) == clusters
 
 
+def test_boxes_that_move_alike_may_be_parts_of_one_body():
+    points, clusters = BUMPERS
+    alike = CARS.velocity + np.array([5.0, 0])
+    for second, count in ((4.5, 1), (5.6, 1), (5.8, 2), (0.0, 2), (-5.0, 2)):
+        alike[1, 0] = second
+        moving = Boxes(CARS.center, CARS.size, CARS.yaw, velocity=alike, id=CARS.id)
+        assert split_clusters(points, clusters, moving).count == count, second
+
+
 def test_a_box_is_where_it_was_when_the_point_was_measured():
     """Two persons who walked apart since: where they are now, both lie beside what was seen of them."""
     points, clusters = one(patch(9.8, 10.2, -0.55, -0.05, 40), patch(9.8, 10.2, 0.05, 0.55, 30))
