@@ -20,19 +20,17 @@ def split_clusters(
 ) -> Clusters:
     """Cut the clusters that hold the returns of several tracked objects.
 
-    A point belongs to the predicted box that it lies deepest in, or nearest to, no farther than
-    `tolerance`; a box is where it was when the point was measured. A box claims a cluster when
-    enough of its points belong to it, and most of them lie in no other box: so neither a track that
-    repeats another, nor one of a part, cuts the whole. Of boxes that move alike only the first claims:
-    they may be parts of one body that was seen between poles. Where several boxes claim a cluster, each
-    of its points goes to the nearest of them.
+    A point belongs to the predicted box that it lies deepest in, or nearest to, no farther than `tolerance`;
+    a box is where it was when the point was measured. A box claims a cluster when enough of its points
+    belong to it, and most of them lie in no other box: so neither a track that repeats another, nor one of a
+    part, cuts the whole. Of boxes that move alike only the first claims: they may be parts of one body seen
+    between poles. Where several boxes claim a cluster, each of its points goes to the nearest.
 
     Args:
         points_world: (n, 3) [m, world]; rows of the clusters' labels.
-        clusters: of this scan.
+        clusters: of this scan. config: settings.
         predicted: boxes of mature tracks, predicted to this scan's stamp [world].
         dt: (n,) when each point was measured, relative to that stamp [s]; at the stamp if None.
-        config: settings.
 
     Returns:
         Clusters, labelled in the order of the old ones, the parts of one in the order of the boxes.
@@ -50,16 +48,21 @@ def split_clusters(
     if not config.enabled or len(predicted) < 2 or clusters.count == 0:
         return clusters
     when = np.zeros(n, np.float32) if dt is None else dt
+    return _relabel(clusters, _parts(points, clusters.label, predicted, when, config))
+
+
+def _parts(points: Array, label: I32, predicted: Boxes, when: F32, config: SplitConfig) -> I64:
+    """The part (n,) of its cluster that each point belongs to."""
     steps = np.nan_to_num(predicted.velocity)  # what has no velocity stands
     where = (predicted.center, predicted.size, predicted.yaw, steps)
-    owner = _owners(points, when, clusters.label, *where, config.tolerance)
-    part = np.zeros(n, np.int64)
-    for c, claimants in _contested(clusters.label, owner, len(predicted), config.points):
+    owner = _owners(points, when, label, *where, config.tolerance)
+    part = np.zeros(len(label), np.int64)
+    for c, claimants in _contested(label, owner, len(predicted), config.points):
         boxes = _bodies(steps, claimants, config.apart)
-        rows = np.flatnonzero(clusters.label == c)
+        rows = np.flatnonzero(label == c)
         distance = np.asarray(_distances(points[rows], when[rows], *(a[boxes] for a in where)))
         part[rows] = cut(distance, config)
-    return _relabel(clusters, part)
+    return part
 
 
 def cut(distance: F64, config: SplitConfig) -> I64:
@@ -72,7 +75,7 @@ def cut(distance: F64, config: SplitConfig) -> I64:
     claims = (number >= config.points) & (held.max(1) < config.explained * np.maximum(number, 1))
     if claims.sum() < 2:
         return np.zeros(len(distance), np.int64)
-    return distance[:, claims].argmin(1)
+    return np.asarray(distance[:, claims].argmin(1))
 
 
 def _bodies(velocity: F64, boxes: I64, least: float) -> I64:
@@ -100,7 +103,7 @@ def _distance(x: float, y: float, c: float, s: float, length: float, width: floa
     dx, dy = abs(c * x + s * y) - length / 2, abs(c * y - s * x) - width / 2
     if max(dx, dy) <= 0:
         return max(dx, dy)
-    return np.hypot(max(dx, 0.0), max(dy, 0.0))
+    return float(np.hypot(max(dx, 0.0), max(dy, 0.0)))
 
 
 @njit(cache=True, nogil=True)

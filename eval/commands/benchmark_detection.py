@@ -29,8 +29,7 @@ def detection(
     """Detection against the truth: recall, corners, yaw, overlap, splits, merges, and what lost the rest.
 
     Objects with ten returns or more count. The tracker is in the loop, so that its predictions come
-    back to the clusters. With --out, leaves detection.json, detection.md and detection.png, where objects
-    stand with their boxes, in DIR.
+    back to the clusters. With --out, leaves detection.json, .md and .png (objects with their boxes) in DIR.
 
     \b
     Examples:
