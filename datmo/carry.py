@@ -15,7 +15,7 @@ from datmo.messages import Boxes, Clusters, Scan
 
 
 class CarryConfig(BaseModel):
-    """Frozen; an unknown key is an error."""
+    """When points are carried to the stamp."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 

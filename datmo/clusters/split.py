@@ -112,17 +112,19 @@ def _owners(
 ) -> I64:
     """The nearest box (n,) to each point that has a label, -1 where none is within the tolerance."""
     owner = np.full(len(label), -1, np.int64)
-    nearest = np.full(len(label), tolerance)
-    for b in range(len(center)):
-        c, s, length, width = np.cos(yaw[b]), np.sin(yaw[b]), size[b, 0], size[b, 1]
-        reach = (np.hypot(length, width) / 2 + tolerance) ** 2
-        for i in range(len(label)):
+    cos, sin = np.cos(yaw), np.sin(yaw)
+    reach = (np.hypot(size[:, 0], size[:, 1]) / 2 + tolerance) ** 2
+    for i in range(len(label)):
+        if label[i] < 0:
+            continue
+        nearest = tolerance
+        for b in range(len(center)):
             x = points[i, 0] - center[b, 0] - velocity[b, 0] * dt[i]
             y = points[i, 1] - center[b, 1] - velocity[b, 1] * dt[i]
-            if label[i] >= 0 and x * x + y * y <= reach:
-                d = _distance(x, y, c, s, length, width)
-                if d < nearest[i]:
-                    nearest[i], owner[i] = d, b
+            if x * x + y * y <= reach[b]:
+                d = _distance(x, y, cos[b], sin[b], size[b, 0], size[b, 1])
+                if d < nearest:
+                    nearest, owner[i] = d, b
     return owner
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from time import perf_counter
 
 import numpy as np
 
@@ -20,6 +19,7 @@ from datmo.ground import segment_ground
 from datmo.messages import Scan
 from datmo.pipeline import ground_below
 from datmo.refine import refine
+from eval.benchmark.cast import timed
 from eval.clouds import read_bin
 from eval.episode import episode
 from scenarios.load import load
@@ -175,8 +175,6 @@ def _take_turns(
     times: dict[str, list[float]] = {name: [] for name in work}
     for _ in range(rounds):
         for name, run in work.items():
-            start = perf_counter()
-            run()
-            times[name].append((perf_counter() - start) * 1e3)
+            times[name].append(timed(run))
         on_round()
     return {name: tuple(found) for name, found in times.items()}

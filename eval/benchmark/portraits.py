@@ -9,13 +9,13 @@ import numpy as np
 
 from datmo.arrays import F64, I32
 from datmo.config import DatmoConfig
-from datmo.geometry import transform
+from datmo.geometry import inverse, rotation_z, transform
 from datmo.messages import Boxes, Detections, Frame, Kind, Truth, Visibility
 from datmo.pipeline import Datmo
 from eval.benchmark.sightings import Job
 from eval.episode import episode, scans_to_play
 from eval.metrics.detection import match_detections
-from eval.metrics.diagnosis import Diagnosis, diagnose
+from eval.metrics.diagnosis import diagnose
 from eval.metrics.matching import Returns
 from sim.env import LidarEnv
 
@@ -82,8 +82,7 @@ class _Told:
 
     def __init__(self, frame: Frame, truth: Truth) -> None:
         self.frame = frame
-        self.matched = match_detections(frame, truth, Returns(frame, truth))
-        self.told: Diagnosis = diagnose(frame, truth, self.matched)
+        self.told = diagnose(frame, truth, match_detections(frame, truth, Returns(frame, truth)))
 
 
 def _worth(one: _Told, other: _Told, truth: Truth) -> Iterator[tuple[str, int, _Told]]:
@@ -107,26 +106,23 @@ def portrait(title: str, frame: Frame, truth: Truth, k: int) -> Portrait:
     places = transform(scan.T_world_sensor, scan.points)
     own, velocity = truth.actor == k, box.velocity[0]
     places[own, :2] -= np.nan_to_num(velocity) * scan.dt[own, None].astype(float)
-    base = box.center[0] - [0, 0, box.size[0, 2] / 2]
-    local = _turned(places - base, -box.yaw[0])
+    T_world_object = np.eye(4)
+    T_world_object[:3, :3] = rotation_z(box.yaw[0])
+    T_world_object[:3, 3] = box.center[0] - [0, 0, box.size[0, 2] / 2]
+    T_object_world = inverse(T_world_object)
+    local = transform(T_object_world, places)
     half = box.size[0, :2] / 2 + AROUND
     near = ~frame.ground.is_ground & (np.abs(local[:, :2]) < half).all(1) & (local[:, 2] < box.size[0, 2] + 1)
-    label = frame.clusters.label[near]
+    label = frame.clusters.label
     assert isinstance(frame.boxes, Detections)
-    mine = np.isin(frame.boxes.cluster, np.unique(frame.clusters.label[own & (frame.clusters.label >= 0)]))
+    mine = np.isin(frame.boxes.cluster, label[own & (label >= 0)])
     found = frame.boxes.select(mine)
-    sensor = _turned((scan.T_world_sensor[:3, 3] - base)[None], -box.yaw[0])[0, :2]
+    sensor = transform(T_object_world, scan.T_world_sensor[None, :3, 3])[0, :2]
     return Portrait(
         title=title,
         points=local[near],
-        label=label,
-        truth=replace(box, center=_turned(box.center - base, -box.yaw[0]), yaw=np.zeros(1)),
-        found=replace(found, center=_turned(found.center - base, -box.yaw[0]), yaw=found.yaw - box.yaw[0]),
+        label=label[near],
+        truth=replace(box, center=transform(T_object_world, box.center), yaw=np.zeros(1)),
+        found=replace(found, center=transform(T_object_world, found.center), yaw=found.yaw - box.yaw[0]),
         sensor=sensor / max(float(np.hypot(*sensor)), 1e-9),
     )
-
-
-def _turned(points: F64, yaw: float) -> F64:
-    c, s = np.cos(yaw), np.sin(yaw)
-    x, y = points[:, 0], points[:, 1]
-    return np.column_stack([c * x - s * y, s * x + c * y, points[:, 2]])
