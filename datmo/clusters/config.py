@@ -19,7 +19,7 @@ class ClusterConfig(BaseModel):
     sparser unit asks for more. No gap parts what begins below the headroom.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     grid: Literal["polar", "plain"] = Field(
         "polar", description="cells that grow with range, or the thesis's plain grid (Alg. 8)"

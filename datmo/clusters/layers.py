@@ -48,9 +48,10 @@ def find_layers(cell: I32, height: Array, grid: PolarGrid, config: ClusterConfig
         grid: of the cells. config: settings; without `layers` a cell has one.
     """
     occupied = _occupancy(cell, height, config.min_height, grid.size)
-    gap = np.ceil(np.maximum(config.gap, config.gap_growth * grid.edges[1:]) / BIN).astype(np.int64)
-    headroom = int(np.ceil((config.headroom - config.min_height) / BIN)) if config.layers else BINS
-    return Layers(*_split(occupied, np.repeat(gap, grid.columns), headroom))
+    gap = np.ceil(np.maximum(config.gap, config.gap_growth * grid.edges[1:]) / BIN)
+    headroom = np.ceil((config.headroom - config.min_height) / BIN) if config.layers else BINS
+    gaps = np.repeat(np.minimum(gap, BINS).astype(np.int64), grid.columns)
+    return Layers(*_split(occupied, gaps, int(min(headroom, BINS))))
 
 
 def label_points(label: I32, layers: Layers, cell: I32, height: Array, config: ClusterConfig) -> I32:
