@@ -21,14 +21,14 @@ Files = Annotated[
     list[Path] | None,
     typer.Option("--cloud", metavar="FILE.bin", help="A sweep of float32 x, y, z, intensity; repeatable."),
 ]
-Rounds = Annotated[int, typer.Option("--rounds", help="Times that each stage and the rival take turns.")]
+Rounds = Annotated[int, typer.Option("--rounds", help="Turns of the rival and of ten runs of each stage.")]
 
 
 def boxes(
     scenarios: Names = None,
     cloud: Files = None,
     seed: o.Seed = 0,
-    rounds: Rounds = 15,
+    rounds: Rounds = 10,
     out: o.OutFolder = None,
     force: o.Force = False,
 ) -> None:
