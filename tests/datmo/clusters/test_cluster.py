@@ -73,6 +73,21 @@ def test_a_car_stays_whole(x, y):
     assert share.max() >= 0.8  # far away a line of roof points may stand alone
 
 
+@pytest.mark.parametrize(("x", "y"), [(8, 3), (-5, 12), (20, -5), (30, -1), (50, -8)])
+@pytest.mark.parametrize("sill", [2.0, 2.3, 2.5])
+def test_layers_do_not_tear_a_bus_with_windows_all_round(x, y, sill):
+    # the glass below the roof's sill returns nothing; pillars hold the roof
+    body = [[x, x + 12, y, y + 2.55, low, high] for low, high in ((0.3, 1.1), (sill, 3.1))]
+    pillars = [
+        [x + u, x + u + 0.15, y + v, y + v + 0.15, 1.1, sill]
+        for u in (0, 2.4, 4.8, 7.2, 9.6, 11.85)
+        for v in (0, 2.4)
+    ]
+    points = see([*body, *pillars], noise=0.01)
+    largest = [np.bincount(labels(points, c)[0] + 1)[1:].max() for c in CONFIGS[:2]]
+    assert largest[0] >= largest[1] - 0.05 * len(points)
+
+
 def test_a_kerb_does_not_link_and_takes_the_label_of_its_cell():
     ends = np.array([[8.0, 2, 1.0], [14, 2, 1.0]])
     kerb = np.column_stack([np.arange(8, 14, 0.05), np.full(120, 2.0), np.full(120, 0.12)])
