@@ -19,7 +19,7 @@ class Bank:
     Attributes:
         id: (t,) never used twice. born, seen: (t,) stamp of the first and the last hit [s].
         fresh: (t,) whether the last scan hit it.
-        x: (t, m, 5), P: (t, m, 5, 5), mu: (t, m) of each mode.
+        x: (t, m, n), P: (t, m, n, n), mu: (t, m) of each mode.
         missed: (t,) time without a hit where it should have been seen [s].
         size: (t, 3) retained dimensions [m]. yaw: (t,) heading of the box [rad].
         z: (t,) height of the box's middle [m], climb: (t,) its rate [m/s].
@@ -50,10 +50,10 @@ class Bank:
         return len(self.id)
 
     @classmethod
-    def empty(cls, modes: int) -> Bank:
-        """No tracks."""
+    def empty(cls, modes: int, size: int) -> Bank:
+        """No tracks of `modes` modes and states of `size` coordinates."""
         real, whole = np.zeros(0), np.zeros(0, np.int64)
-        x, P, mu = np.zeros((0, modes, 5)), np.zeros((0, modes, 5, 5)), np.zeros((0, modes))
+        x, P, mu = np.zeros((0, modes, size)), np.zeros((0, modes, size, size)), np.zeros((0, modes))
         flag, past = np.zeros(0, np.bool_), np.zeros((0, HISTORY, 4))
         return cls(
             whole, real, real, flag, x, P, mu, real, np.zeros((0, 3)),
@@ -70,7 +70,7 @@ class Bank:
         return Bank(*(np.concatenate(pair) for pair in pairs))
 
     def remember(self, stamp: float, mean: F64) -> None:
-        """Append the state (t, 5) at `stamp` to the past."""
+        """Append the state (t, n) at `stamp` to the past."""
         self.past[:, :-1] = self.past[:, 1:]
         self.past[:, -1, 0] = stamp
         self.past[:, -1, 1:] = mean[:, [0, 1, 3]]

@@ -13,12 +13,16 @@ class TrackerConfig(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     # Motion (method.md 9)
-    models: tuple[Literal["cv", "ctrv", "rm"], ...] = Field(
+    models: tuple[Literal["cv", "ctrv", "rm", "ctra", "csav", "cca"], ...] = Field(
         ("cv", "ctrv", "rm"), min_length=1, description="motion models of the IMM, by name"
     )
     accel_density: float = Field(1.5, gt=0, description="white acceleration along the heading [m²/s³]")
     heading_density: float = Field(0.006, gt=0, description="random walk of a CV heading [rad²/s]")
     yaw_accel_density: float = Field(0.08, gt=0, description="white yaw acceleration of CTRV [rad²/s³]")
+    jerk_density: float = Field(2.0, gt=0, description="white jerk along the heading, CTRA and CCA [m²/s⁵]")
+    curvature_density: float = Field(
+        0.002, gt=0, description="random walk of the curvature of CSAV and CCA [1/(m² s)]"
+    )
     random_density: float = Field(1.5, gt=0, description="random walk of an RM position [m²/s]")
     cv_keeps_yaw_rate: bool = Field(False, description="CV keeps its yaw rate, as the thesis has it")
 

@@ -12,6 +12,8 @@ from datmo.tracks.birth import Newborns
 from datmo.tracks.config import TrackerConfig
 from datmo.tracks.gate import Pairs
 
+NEW_ACCEL_STD = 1.0  # [m/s²] of a track just confirmed
+
 
 def unclaimed(
     boxes: Boxes, pairs: Pairs, links: Links, bank: Bank, mean: F64, hit: Bool, config: TrackerConfig
@@ -27,10 +29,12 @@ def unclaimed(
     return np.asarray((claimed < config.claim) & ~inside.any(axis=1))
 
 
-def as_bank(new: Newborns, stamp: float, config: TrackerConfig) -> Bank:
-    """New tracks as confirmed ones, every mode alike and equally likely."""
+def as_bank(new: Newborns, stamp: float, size: int, config: TrackerConfig) -> Bank:
+    """New tracks as confirmed ones of states of `size`, every mode alike and equally likely."""
     n, m = len(new), len(config.models)
-    x, P, _ = new.polar(config)
+    known, cov, _ = new.polar(config)
+    x, P = np.zeros((n, size)), np.tile(NEW_ACCEL_STD**2 * np.eye(size), (n, 1, 1))
+    x[:, :5], P[:, :5, :5] = known, cov
     past = np.full((n, HISTORY, 4), np.nan)
     past[:, -1, 0], past[:, -1, 1:] = stamp, x[:, [0, 1, 3]]
     return Bank(

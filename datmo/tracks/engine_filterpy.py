@@ -11,7 +11,7 @@ from datmo.arrays import F64
 from datmo.geometry import wrap_angle
 from datmo.tracks.filters import Filters
 from datmo.tracks.models import PSI, MotionModel
-from datmo.tracks.ukf import ALPHA, BETA, KAPPA, N, half_turn, mean_about, residual, square_root, tame
+from datmo.tracks.ukf import ALPHA, BETA, KAPPA, half_turn, mean_about, residual, square_root, tame
 
 
 def _mean(sigmas: F64, weights: F64) -> F64:
@@ -55,6 +55,8 @@ class FilterpyFilters(Filters):
         return out_x, out_P
 
     def _filter(self, x: F64, P: F64, dim_z: int) -> Any:
+        n = len(x)
+
         def rows(matrix: F64) -> F64:
             factor, repaired = square_root(matrix[None])
             self.jitters += repaired
@@ -71,11 +73,11 @@ class FilterpyFilters(Filters):
             return np.asarray(sigmas[0] + weights @ d)
 
         def _state(sigmas: F64) -> F64:
-            return np.pad(sigmas, ((0, 0), (0, N - dim_z)))
+            return np.pad(sigmas, ((0, 0), (0, n - dim_z)))
 
-        points = MerweScaledSigmaPoints(N, ALPHA, BETA, KAPPA, sqrt_method=rows)
+        points = MerweScaledSigmaPoints(n, ALPHA, BETA, KAPPA, sqrt_method=rows)
         ukf = UnscentedKalmanFilter(
-            N, dim_z, dt=0.1, hx=lambda s: s[:dim_z], fx=lambda s, _: s, points=points,
+            n, dim_z, dt=0.1, hx=lambda s: s[:dim_z], fx=lambda s, _: s, points=points,
             x_mean_fn=_mean, z_mean_fn=mean_z, residual_x=residual, residual_z=residual_z, state_add=_add,
         )  # fmt: skip
         ukf.x, ukf.P = x.copy(), P.copy()

@@ -11,8 +11,8 @@ from datmo.tracks.bank import Bank
 from datmo.tracks.config import TrackerConfig
 from datmo.tracks.filters import Filters
 from datmo.tracks.gate import Pairs
-from datmo.tracks.imm import combine, lend_yaw_rate, mix, rates, reweigh, transition
-from datmo.tracks.models import PSI, make_models
+from datmo.tracks.imm import combine, lend, mix, rates, reweigh, transition
+from datmo.tracks.models import ACCEL, OMEGA, PSI, make_models, state_size
 from datmo.tracks.ukf import residual, tame
 
 LONGEST_STEP = 0.5  # [s] longer gaps are predicted in parts
@@ -31,7 +31,9 @@ class Estimator:
     def __init__(self, config: TrackerConfig, filters: Filters) -> None:
         self.config, self.filters = config, filters
         self.models = make_models(config)
+        self.size = state_size(self.models)
         self._has_yaw_rate = np.array([m.has_yaw_rate for m in self.models])
+        self._has_acceleration = np.array([m.has_acceleration for m in self.models])
         self._stands = np.array([m.stands for m in self.models])
         self._rates = rates(config)
 
@@ -41,7 +43,7 @@ class Estimator:
         Tracks that were not seen in the last scan neither mix nor change their modes.
 
         Returns:
-            combined mean (t, 5) and covariance (t, 5, 5).
+            combined mean (t, n) and covariance (t, n, n).
         """
         if len(bank) and dt > 0:
             self._mix(bank, dt)
@@ -57,7 +59,7 @@ class Estimator:
         return mean, P
 
     def combined(self, bank: Bank) -> tuple[F64, F64]:
-        """One mean (t, 5) and covariance (t, 5, 5) of all modes (2.53-2.54)."""
+        """One mean (t, n) and covariance (t, n, n) of all modes (2.53-2.54)."""
         return combine(*self._lent(bank), bank.mu)
 
     def update(self, bank: Bank, pairs: Pairs, links: Links, ratio: F64, before: F64) -> None:
@@ -72,12 +74,12 @@ class Estimator:
             ratio: (p, m) N(nu_ij) / sum_j mu_bar_j N(nu_ij), the mode likelihood of section 12.
             before: (t, m) mode probabilities before the interaction.
         """
-        m, prior_x, prior_P = len(self.models), bank.x, bank.P
-        x, P = prior_x[pairs.track].reshape(-1, 5), prior_P[pairs.track].reshape(-1, 5, 5)
+        m, n, prior_x, prior_P = len(self.models), self.size, bank.x, bank.P
+        x, P = prior_x[pairs.track].reshape(-1, n), prior_P[pairs.track].reshape(-1, n, n)
         z, R, yaw, var = (np.repeat(a, m, axis=0) for a in (pairs.z, pairs.R, pairs.yaw, pairs.yaw_var))
         x, P = self.filters.correct(x, P, z, R, yaw, var)
-        shift = residual(x.reshape(-1, m, 5), prior_x[pairs.track])
-        spread = P.reshape(-1, m, 5, 5) + np.einsum("pmi,pmj->pmij", shift, shift)
+        shift = residual(x.reshape(-1, m, n), prior_x[pairs.track])
+        spread = P.reshape(-1, m, n, n) + np.einsum("pmi,pmj->pmij", shift, shift)
         moved, second = np.zeros_like(prior_x), prior_P * links.missed[:, None, None, None]
         np.add.at(moved, pairs.track, links.beta[:, None, None] * shift)
         np.add.at(second, pairs.track, links.beta[:, None, None, None] * spread)
@@ -110,6 +112,7 @@ class Estimator:
         bank.mu = np.where(free[:, None], mu_bar, bank.mu)
 
     def _lent(self, bank: Bank) -> tuple[F64, F64]:
-        if self.config.mix_yaw_rate:
-            return bank.x, bank.P
-        return lend_yaw_rate(bank.x, bank.P, bank.mu, self._has_yaw_rate)
+        x, P = bank.x, bank.P
+        if not self.config.mix_yaw_rate:
+            x, P = lend(x, P, bank.mu, OMEGA, self._has_yaw_rate)
+        return lend(x, P, bank.mu, ACCEL, self._has_acceleration)

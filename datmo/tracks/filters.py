@@ -15,15 +15,15 @@ class Filters(ABC):
 
     @abstractmethod
     def predict(self, model: MotionModel, x: F64, P: F64, dt: float) -> tuple[F64, F64]:
-        """States (n, 5) and covariances (n, 5, 5) under `model` after `dt` [s]."""
+        """States (k, n) and covariances (k, n, n) under `model` after `dt` [s]."""
 
     @abstractmethod
     def correct(self, x: F64, P: F64, z: F64, R: F64, yaw: F64, yaw_var: F64) -> tuple[F64, F64]:
         """States and covariances after one measurement each.
 
         Args:
-            x: (n, 5). P: (n, 5, 5).
-            z: (n, 2) place [m, world]. R: (n, 2, 2) [m²].
-            yaw: (n,) [rad], modulo pi; NaN where there is none.
-            yaw_var: (n,) [rad²].
+            x: (k, n). P: (k, n, n).
+            z: (k, 2) place [m, world]. R: (k, 2, 2) [m²].
+            yaw: (k,) [rad], modulo pi; NaN where there is none.
+            yaw_var: (k,) [rad²].
         """

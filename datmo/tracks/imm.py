@@ -1,6 +1,6 @@
 """Interacting multiple models (2.44-2.54; method.md section 11).
 
-Arrays over tracks t and modes j: x (t, m, 5), P (t, m, 5, 5), mu (t, m).
+Arrays over tracks t and modes j: x (t, m, n), P (t, m, n, n), mu (t, m).
 """
 
 from __future__ import annotations
@@ -9,7 +9,6 @@ import numpy as np
 
 from datmo.arrays import F64, Bool
 from datmo.tracks.config import TrackerConfig
-from datmo.tracks.models import OMEGA
 from datmo.tracks.ukf import mean_about, residual
 
 TERMS = 24  # of the exponential series at one expected step: the rest is below 1e-23
@@ -45,22 +44,26 @@ def transition(rate: F64, dt: float) -> F64:
     return np.asarray(p / p.sum(axis=1, keepdims=True))
 
 
-def lend_yaw_rate(x: F64, P: F64, mu: F64, has_yaw_rate: Bool) -> tuple[F64, F64]:
-    """Give models without a yaw rate that of the likeliest model that has one.
+def lend(x: F64, P: F64, mu: F64, coordinate: int, has: Bool) -> tuple[F64, F64]:
+    """Give models without a yaw rate, or an acceleration, that of the likeliest model that has one.
 
     Their own stands at zero by construction; averaged in, it would straighten every turn.
     The lent coordinate comes uncorrelated, which keeps P positive definite.
+
+    Args:
+        x: (t, m, n). P: (t, m, n, n). mu: (t, m). coordinate: of the state.
+        has: (m,) whether it means anything under each model.
     """
-    if has_yaw_rate.all() or not has_yaw_rate.any():
+    if has.all() or not has.any():
         return x, P
-    donors = np.flatnonzero(has_yaw_rate)
+    donors, k = np.flatnonzero(has), coordinate
     donor = donors[np.argmax(mu[:, donors], axis=1)]
     rows = np.arange(len(x))
     x, P = x.copy(), P.copy()
-    for j in np.flatnonzero(~has_yaw_rate):
-        x[:, j, OMEGA] = x[rows, donor, OMEGA]
-        P[:, j, OMEGA, :] = P[:, j, :, OMEGA] = 0
-        P[:, j, OMEGA, OMEGA] = P[rows, donor, OMEGA, OMEGA]
+    for j in np.flatnonzero(~has):
+        x[:, j, k] = x[rows, donor, k]
+        P[:, j, k, :] = P[:, j, :, k] = 0
+        P[:, j, k, k] = P[rows, donor, k, k]
     return x, P
 
 
@@ -69,7 +72,7 @@ def mix(x: F64, P: F64, mu: F64, p: F64) -> tuple[F64, F64, F64]:
     mu_bar = np.einsum("ti,ij->tj", mu, p)
     weights = mu[:, :, None] * p[None] / np.maximum(mu_bar, 1e-300)[:, None, :]  # (t, i, j)
     w = np.swapaxes(weights, 1, 2)  # (t, j, i)
-    spread_x = np.broadcast_to(x[:, None], (*w.shape, 5))
+    spread_x = np.broadcast_to(x[:, None], (*w.shape, x.shape[-1]))
     mean = mean_about(spread_x, w, x)
     d = residual(spread_x, mean[:, :, None])
     mixed = np.einsum("tji,tikl->tjkl", w, P) + np.einsum("tji,tjik,tjil->tjkl", w, d, d)
@@ -77,7 +80,7 @@ def mix(x: F64, P: F64, mu: F64, p: F64) -> tuple[F64, F64, F64]:
 
 
 def combine(x: F64, P: F64, mu: F64) -> tuple[F64, F64]:
-    """One mean (t, 5) and covariance (t, 5, 5) of all modes, same weights in both (2.53-2.54)."""
+    """One mean (t, n) and covariance (t, n, n) of all modes, same weights in both (2.53-2.54)."""
     best = x[np.arange(len(x)), np.argmax(mu, axis=1)]
     mean = mean_about(x, mu, best)
     d = residual(x, mean[:, None])

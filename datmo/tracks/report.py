@@ -13,7 +13,7 @@ from datmo.tracks.ukf import half_turn
 
 
 def predicted_boxes(bank: Bank, mean: F64) -> Boxes:
-    """Boxes (t) of the bank at the combined mean (t, 5), heading along the motion."""
+    """Boxes (t) of the bank at the combined mean (t, n), heading along the motion."""
     heading = mean[:, 2]
     yaw = heading + half_turn(bank.yaw - heading)
     velocity = mean[:, 3, None] * np.column_stack([np.cos(heading), np.sin(heading)])
@@ -50,7 +50,7 @@ def as_tracks(
     return Tracks(
         boxes=both.select(order),
         stamp=stamp,
-        cov=np.concatenate([P, cov])[order],
+        cov=np.concatenate([P[:, :5, :5], cov])[order],
         mode_prob=np.concatenate([bank.mu, np.full((len(new), modes), 1 / modes)])[order],
         status=np.concatenate([status, np.minimum(new.hits, 4).astype(np.uint8)])[order],
         is_dynamic=np.concatenate([bank.dynamic, np.zeros(len(new), np.bool_)])[order],

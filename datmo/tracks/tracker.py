@@ -53,8 +53,8 @@ class Tracker:
 
     def reset(self) -> None:
         """Forget every track; ids go on, so none is used twice."""
-        self._bank = Bank.empty(len(self.config.models))
-        self._lost = Bank.empty(len(self.config.models))
+        shape = len(self.config.models), self._estimator.size
+        self._bank, self._lost = Bank.empty(*shape), Bank.empty(*shape)
         self._new = Newborns.start(np.zeros(0, np.int64), 0.0, Boxes.empty(), self.config)
         self._stamp: float | None = None
         self._dt = 0.0
@@ -173,7 +173,10 @@ class Tracker:
         """Confirm, recall, bury; what is alive now."""
         config, stamp = self.config, float(self._stamp or 0.0)
         ripe = self._new.hits >= config.confirm_hits
-        grown, self._new = as_bank(self._new.select(ripe), stamp, config), self._new.select(~ripe)
+        grown, self._new = (
+            as_bank(self._new.select(ripe), stamp, self._estimator.size, config),
+            self._new.select(~ripe),
+        )
         pool = self._bank.join(self._lost)
         mean, P = self._estimator.combined(pool)
         old, young = recall(pool, mean, P, grown, stamp, config)

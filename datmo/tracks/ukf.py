@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 from datmo.arrays import F64
@@ -9,26 +11,31 @@ from datmo.geometry import wrap_angle
 from datmo.tracks.filters import Filters
 from datmo.tracks.models import PSI, MotionModel
 
-N = 5
 ALPHA, BETA, KAPPA = 1.0, 2.0, 0.0
-LAMBDA = ALPHA**2 * (N + KAPPA) - N
-W_MEAN = np.full(2 * N + 1, 0.5 / (N + LAMBDA))
-W_COV = W_MEAN.copy()
-W_MEAN[0] = LAMBDA / (N + LAMBDA)
-W_COV[0] = W_MEAN[0] + 1 - ALPHA**2 + BETA
 JITTER = 1e-9
-MAX_STD = np.array([np.inf, np.inf, 1.0, 30.0, 1.5])  # beyond these an angle's deviation means nothing
+MAX_STD = np.array([np.inf, np.inf, 1.0, 30.0, 1.5, 10.0])  # beyond these a deviation means nothing
+
+
+@cache
+def weights(n: int) -> tuple[float, F64, F64]:
+    """Spread n + lambda, and weights (2n + 1,) of mean and covariance, of n coordinates (2.29-2.31)."""
+    spread = ALPHA**2 * (n + KAPPA)
+    mean = np.full(2 * n + 1, 0.5 / spread)
+    cov = mean.copy()
+    mean[0] = 1 - n / spread
+    cov[0] = mean[0] + 1 - ALPHA**2 + BETA
+    return spread, mean, cov
 
 
 def residual(a: F64, b: F64) -> F64:
-    """a - b of states (..., 5), the yaw on the circle."""
+    """a - b of states (..., n), the yaw on the circle."""
     d = np.asarray(a - b)
     d[..., PSI] = wrap_angle(d[..., PSI])
     return d
 
 
 def mean_about(x: F64, weights: F64, reference: F64) -> F64:
-    """Weighted mean (..., 5) of states (..., m, 5), yaw taken as differences from `reference`.
+    """Weighted mean (..., n) of states (..., m, n), yaw taken as differences from `reference`.
 
     Equal to the linear mean away from +-pi, and independent of where the circle is cut.
     """
@@ -38,7 +45,7 @@ def mean_about(x: F64, weights: F64, reference: F64) -> F64:
 
 
 def square_root(P: F64) -> tuple[F64, int]:
-    """Factors C (n, 5, 5), C C' = P, and how many matrices needed a jitter to have one.
+    """Factors C (k, n, n), C C' = P, and how many matrices needed a jitter to have one.
 
     Taken from the last coordinate up: the columns that turn and speed up do not depend on how the
     world's axes lie, and those of the place alone enter every model linearly. So a turned world
@@ -60,8 +67,8 @@ def _cholesky(P: F64) -> tuple[F64, int]:
 
 
 def sigma_points(x: F64, P: F64) -> tuple[F64, int]:
-    """Sigma points (n, 11, 5) of (n, 5), (n, 5, 5), and the number of repaired covariances."""
-    C, repaired = square_root((N + LAMBDA) * P)
+    """Sigma points (k, 2n + 1, n) of (k, n), (k, n, n), and the number of repaired covariances."""
+    C, repaired = square_root(weights(x.shape[-1])[0] * P)
     columns = np.swapaxes(C, -1, -2)
     return np.concatenate([x[:, None], x[:, None] + columns, x[:, None] - columns], 1), repaired
 
@@ -70,7 +77,7 @@ def tame(P: F64) -> F64:
     """Symmetric covariance whose deviations stay within `MAX_STD`, scaled as D P D."""
     P = 0.5 * (P + np.swapaxes(P, -1, -2))
     std = np.sqrt(np.maximum(np.einsum("...ii->...i", P), 1e-300))
-    D = np.minimum(1.0, MAX_STD / std)
+    D = np.minimum(1.0, MAX_STD[: std.shape[-1]] / std)
     return np.asarray(P * D[..., :, None] * D[..., None, :])
 
 
@@ -83,9 +90,10 @@ class BatchedFilters(Filters):
         self.jitters += repaired
         Q = model.noise(x, dt)
         moved = model.propagate(points, dt)
-        mean = mean_about(moved, W_MEAN[None], moved[:, 0])
+        _, of_mean, of_cov = weights(x.shape[-1])
+        mean = mean_about(moved, of_mean[None], moved[:, 0])
         d = residual(moved, mean[:, None])
-        return mean, tame(np.einsum("m,nmi,nmj->nij", W_COV, d, d) + Q)
+        return mean, tame(np.einsum("m,nmi,nmj->nij", of_cov, d, d) + Q)
 
     def correct(self, x: F64, P: F64, z: F64, R: F64, yaw: F64, yaw_var: F64) -> tuple[F64, F64]:
         """See `Filters` (2.36-2.43).
@@ -124,5 +132,5 @@ def _repaired(P: F64) -> tuple[F64, int]:
     except np.linalg.LinAlgError:
         values, vectors = np.linalg.eigh(P)
         lifted = np.maximum(values, JITTER * max(float(values[-1]), 1.0))
-        lifted_P = (vectors * lifted) @ vectors.T + JITTER * np.eye(N)
+        lifted_P = (vectors * lifted) @ vectors.T + JITTER * np.eye(len(P))
         return np.asarray(np.linalg.cholesky(lifted_P), np.float64), 1

@@ -10,14 +10,16 @@ from scipy.linalg import expm
 from datmo.geometry import wrap_angle
 from datmo.tracks.config import TrackerConfig
 from datmo.tracks.engine_filterpy import FilterpyFilters
-from datmo.tracks.imm import combine, lend_yaw_rate, mix, rates, reweigh, transition
-from datmo.tracks.models import ConstantTurn, ConstantVelocity, RandomMotion, make_models
+from datmo.tracks.imm import combine, lend, mix, rates, reweigh, transition
+from datmo.tracks.models import make_models
 from datmo.tracks.ukf import BatchedFilters, residual, square_root
 
-MODELS = make_models(TrackerConfig())
+NAMES = ("cv", "ctrv", "rm", "ctra", "csav", "cca")
+ALL = make_models(TrackerConfig(models=NAMES))
+MODELS = ALL[:3]
 
 
-def random_states(rng, n, spread=1.0):
+def random_states(rng, n, spread=1.0, size=5):
     x = np.column_stack(
         [
             rng.uniform(-50, 50, (n, 2)),
@@ -26,26 +28,30 @@ def random_states(rng, n, spread=1.0):
             rng.uniform(-0.5, 0.5, n),
         ]
     )
-    A = rng.normal(0, 1, (n, 5, 5)) * np.array([0.4, 0.4, 0.08, 0.6, 0.1])[:, None] * spread
-    return x, np.einsum("nij,nkj->nik", A, A) + 1e-4 * np.eye(5)
+    x = np.column_stack([x, rng.uniform(-3, 3, n)])[:, :size]
+    A = rng.normal(0, 1, (n, size, size)) * np.array([0.4, 0.4, 0.08, 0.6, 0.1, 0.5])[:size, None] * spread
+    return x, np.einsum("nij,nkj->nik", A, A) + 1e-4 * np.eye(size)
 
 
 def scalar_predict(model, x, P, dt):
     """One state, one sigma point after another; plain sums, the yaw far from +-pi."""
-    C = square_root(5 * P[None])[0][0]
-    points = [x, *(x + C[:, i] for i in range(5)), *(x - C[:, i] for i in range(5))]
+    n = len(x)
+    C = square_root(n * P[None])[0][0]
+    points = [x, *(x + C[:, i] for i in range(n)), *(x - C[:, i] for i in range(n))]
     moved = [model.propagate(p[None], dt)[0] for p in points]
-    mean = sum(0.1 * p for p in moved[1:])
+    mean = sum(p / (2 * n) for p in moved[1:])
     cov = 2 * np.outer(moved[0] - mean, moved[0] - mean)
     for p in moved[1:]:
-        cov = cov + 0.1 * np.outer(p - mean, p - mean)
+        cov = cov + np.outer(p - mean, p - mean) / (2 * n)
     return mean, cov + model.noise(x[None], dt)[0]
 
 
-@pytest.mark.parametrize("model", MODELS, ids=["cv", "ctrv", "rm"])
-def test_batched_equals_scalar_and_filterpy(model):
+@pytest.mark.parametrize(
+    ("model", "size"), [(m, n) for m in ALL for n in (5, 6) if n == 6 or not m.has_acceleration]
+)
+def test_batched_equals_scalar_and_filterpy(model, size):
     rng = np.random.default_rng(0)
-    x, P = random_states(rng, 20)
+    x, P = random_states(rng, 20, size=size)
     z, R = x[:, :2] + rng.normal(0, 0.5, (20, 2)), np.tile([[0.04, 0.01], [0.01, 0.09]], (20, 1, 1))
     yaw = np.where(np.arange(20) % 3 == 0, np.nan, x[:, 2] + 0.05)
     var = np.full(20, 0.004)
@@ -62,38 +68,6 @@ def test_batched_equals_scalar_and_filterpy(model):
     b = FilterpyFilters().correct(*b, z, R, yaw, var)
     for left, right in zip(a, b, strict=True):
         np.testing.assert_allclose(left, right, atol=1e-9)
-
-
-def test_models_are_the_printed_ones():
-    x = np.array([[1.0, 2.0, 0.3, 5.0, 0.2]])
-    T = 0.4
-    ctrv = ConstantTurn(1, 1).propagate(x, T)[0]
-    want = [
-        1 + 5 / 0.2 * (np.sin(0.3 + 0.2 * T) - np.sin(0.3)),
-        2 + 5 / 0.2 * (np.cos(0.3) - np.cos(0.3 + 0.2 * T)),
-        0.3 + 0.2 * T,
-        5,
-        0.2,
-    ]
-    np.testing.assert_allclose(ctrv, want, atol=1e-12)
-    x[0, 4] = 1e-12
-    cv = ConstantVelocity(1, 1).propagate(x, T)
-    np.testing.assert_allclose(ConstantTurn(1, 1).propagate(x, T)[0, :4], cv[0, :4], atol=1e-9)
-    assert cv[0, 4] == 0
-    assert ConstantVelocity(1, 1, True).propagate(x, T)[0, 4] == 1e-12
-    np.testing.assert_array_equal(RandomMotion(1, 1, 1).propagate(x, T), x)
-
-
-@pytest.mark.parametrize("model", MODELS, ids=["cv", "ctrv", "rm"])
-def test_noise_of_two_steps_is_that_of_one(model):
-    """White noise in continuous time: Q(2T) = F Q(T) F' + Q(T), to the order of the step."""
-    x, T, h = np.array([[0.0, 0, 0.7, 6.0, 0.0]]), 0.05, 1e-6
-    F = np.array(
-        [(model.propagate(x + h * d, T) - model.propagate(x - h * d, T))[0] / (2 * h) for d in np.eye(5)]
-    ).T
-    Q = model.noise(x, T)[0]
-    np.testing.assert_allclose(F @ Q @ F.T + Q, model.noise(x, 2 * T)[0], atol=2e-8)
-    assert np.linalg.eigvalsh(Q).min() > 0
 
 
 def test_linear_motion_equals_the_kalman_filter():
@@ -186,7 +160,7 @@ def test_yaw_rate_is_lent_not_averaged():
     x[0, 1, 4] = 0.4
     P = np.tile(np.eye(5), (1, 3, 1, 1))
     P[0, 1, 4, 4] = 0.01
-    x, P = lend_yaw_rate(x, P, np.full((1, 3), 1 / 3), np.array([False, True, False]))
+    x, P = lend(x, P, np.full((1, 3), 1 / 3), 4, np.array([False, True, False]))
     mean, cov = combine(x, P, np.full((1, 3), 1 / 3))
     assert mean[0, 4] == pytest.approx(0.4)
     assert cov[0, 4, 4] == pytest.approx(0.01)

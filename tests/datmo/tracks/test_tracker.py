@@ -14,6 +14,7 @@ from datmo.geometry import wrap_angle
 from datmo.messages import Boxes
 from datmo.tracks import Tracker, TrackerConfig
 from datmo.tracks.manage import status
+from datmo.tracks.models import make_models
 
 
 def scene(seed, frames=25, n=12, clutter=5, dt=0.1, area=40.0):
@@ -250,3 +251,17 @@ def test_wrong_settings_are_named():
         TrackerConfig(transition_rates=((1.0, 0, 0), (0, 0, 0), (0, 0, 0)))
     with pytest.raises(ValueError, match="Extra inputs"):
         TrackerConfig(gate=3)
+
+
+@pytest.mark.parametrize("models", [("ctra",), ("cv", "ctrv", "ctra"), ("cca", "csav", "rm")])
+def test_models_that_know_acceleration_follow_who_brakes_on_an_arc(models):
+    tracker, state = Tracker(TrackerConfig(models=models)), np.array([[10.0, 0, 0.5, 12.0, 0.3, -1.5]])
+    motion = make_models(TrackerConfig(models=("ctra",)))[0]
+    for k in range(60):
+        tracks = tracker.step(Boxes([[*state[0, :2], 0.8]], [[4.5, 1.8, 1.5]], state[0, 2:3]), k * 0.1)
+        state = motion.propagate(state, 0.1)
+    assert len(tracks.boxes) == 1
+    assert tracks.cov.shape == (1, 5, 5)
+    back = motion.propagate(state, -0.1)[0]
+    assert np.hypot(*(tracks.boxes.center[0, :2] - back[:2])) < 0.1
+    assert np.hypot(*tracks.boxes.velocity[0]) == pytest.approx(back[3], abs=0.3)

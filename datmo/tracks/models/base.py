@@ -1,0 +1,89 @@
+"""What a motion model is, and the pieces of process noise they share.
+
+The state is [px, py, psi, v, omega] (2.7), with the acceleration along the heading as a sixth
+coordinate where a model of the IMM knows one. Noise is white in continuous time, so two steps of
+T/2 gather what one of T does.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+
+import numpy as np
+
+from datmo.arrays import F64
+
+PX, PY, PSI, V, OMEGA, ACCEL = range(6)
+FLOOR = 1e-9  # variance that keeps an untouched coordinate positive definite
+
+
+class MotionModel(ABC):
+    """How a state moves in `dt` and how uncertain that is.
+
+    A model that has no yaw rate or no acceleration sets that coordinate to zero.
+    """
+
+    has_yaw_rate: bool
+    has_acceleration: bool = False
+    stands: bool = False  # whether it keeps the place whatever the speed
+
+    @abstractmethod
+    def propagate(self, x: F64, dt: float) -> F64:
+        """States (..., n) after `dt` [s]."""
+
+    @abstractmethod
+    def noise(self, x: F64, dt: float) -> F64:
+        """Process noise (..., n, n) gathered over `dt` [s] by states (..., n)."""
+
+
+def unaccelerated(x: F64) -> F64:
+    """States (..., n) with no acceleration, in place; nothing where the state has none."""
+    x[..., ACCEL:] = 0
+    return x
+
+
+def along(x: F64, dt: float, density: float) -> F64:
+    """White acceleration of `density` [m²/s³] along the heading, axes (along, across, psi, v, ...)."""
+    n = x.shape[-1]
+    Q = np.zeros((*x.shape, n))
+    Q[..., 0, 0] = density * dt**3 / 3
+    Q[..., 0, V] = Q[..., V, 0] = density * dt**2 / 2
+    Q[..., V, V] = density * dt
+    return np.asarray(Q + FLOOR * np.eye(n))
+
+
+def along_jerked(x: F64, dt: float, density: float) -> F64:
+    """White jerk of `density` [m²/s⁵] along the heading, axes (along, across, psi, v, omega, a)."""
+    Q = np.zeros((*x.shape, x.shape[-1]))
+    chain = np.array(
+        [
+            [dt**5 / 20, dt**4 / 8, dt**3 / 6],
+            [dt**4 / 8, dt**3 / 3, dt**2 / 2],
+            [dt**3 / 6, dt**2 / 2, dt],
+        ]
+    )
+    rows = [0, V, ACCEL]
+    Q[..., np.ix_(rows, rows)[0], np.ix_(rows, rows)[1]] = density * chain
+    return np.asarray(Q + FLOOR * np.eye(x.shape[-1]))
+
+
+def turning(Q: F64, x: F64, dt: float, density: F64) -> F64:
+    """Q with white yaw acceleration of `density` (...) [rad²/s³], which turns heading and place."""
+    speed = x[..., V]
+    Q[..., 1, 1] += speed**2 * density * dt**5 / 20
+    Q[..., 1, PSI] = Q[..., PSI, 1] = speed * density * dt**4 / 8
+    Q[..., 1, OMEGA] = Q[..., OMEGA, 1] = speed * density * dt**3 / 6
+    Q[..., PSI, PSI] += density * dt**3 / 3
+    Q[..., PSI, OMEGA] = Q[..., OMEGA, PSI] = density * dt**2 / 2
+    Q[..., OMEGA, OMEGA] += density * dt
+    return Q
+
+
+def to_world(Q: F64, psi: F64) -> F64:
+    """Q from axes along and across the heading `psi` (...) to the world's."""
+    G = np.zeros_like(Q)
+    c, s = np.cos(psi), np.sin(psi)
+    G[..., 0, 0], G[..., 0, 1], G[..., 1, 0], G[..., 1, 1] = c, -s, s, c
+    for i in range(2, Q.shape[-1]):
+        G[..., i, i] = 1
+    return np.asarray(np.einsum("...ij,...jk,...lk->...il", G, Q, G))
