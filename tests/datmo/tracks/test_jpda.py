@@ -7,10 +7,11 @@ from math import factorial
 import numpy as np
 import pytest
 
-from datmo.tracks.associate import _pda, associate, clutter_weights, groups
+from datmo.tracks.associate import associate, clutter_weights, groups
 from datmo.tracks.config import TrackerConfig
 from datmo.tracks.gate import Pairs
 from datmo.tracks.jpda import marginals
+from datmo.tracks.pda import pda, unassigned
 
 
 def brute(W, miss, phi=None):
@@ -43,7 +44,7 @@ def test_marginals_equal_brute_force(seed, counted):
     phi = clutter_weights(c, min(r, c), 7.3) if counted else None
     got, cut = marginals(W, miss, phi)
     assert cut == 0
-    np.testing.assert_allclose(got, brute(W, miss, phi), atol=1e-10)
+    np.testing.assert_allclose(got, brute(W, miss, phi), rtol=0, atol=1e-10)
     np.testing.assert_allclose(got.sum(1), 1, atol=1e-12)
 
 
@@ -152,6 +153,6 @@ def test_groups_are_independent():
 
 def test_tracks_without_a_box_are_missed():
     none = some_pairs([0], [0]).select(np.zeros(0, int))
-    beta, missed = _pda(none, np.zeros(0), np.ones(2), TrackerConfig())
+    beta, missed = pda(none, np.zeros(0), unassigned(none, np.ones(2), TrackerConfig()))
     assert len(beta) == 0
     assert missed.tolist() == [1, 1]
