@@ -8,6 +8,8 @@ from filterpy.kalman import IMMEstimator, KalmanFilter, MerweScaledSigmaPoints, 
 from scipy.linalg import expm
 
 from datmo.geometry import wrap_angle
+from datmo.messages import Boxes
+from datmo.tracks.birth import Newborns
 from datmo.tracks.config import TrackerConfig
 from datmo.tracks.engine_filterpy import FilterpyFilters
 from datmo.tracks.imm import combine, lend_yaw_rate, mix, rates, reweigh, transition
@@ -52,16 +54,47 @@ def test_batched_equals_scalar_and_filterpy(model):
     for i in range(20):
         mean, cov = scalar_predict(model, x[i], P[i], 0.1)
         one = BatchedFilters().predict(model, x[i : i + 1], P[i : i + 1], 0.1)
-        np.testing.assert_allclose(one[0][0], mean, atol=1e-9)
-        np.testing.assert_allclose(one[1][0], cov, atol=1e-9)
+        np.testing.assert_allclose(one[0][0], mean, rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(one[1][0], cov, rtol=1e-9, atol=1e-9)
     a = BatchedFilters().predict(model, x, P, 0.1)
     b = FilterpyFilters().predict(model, x, P, 0.1)
     for left, right in zip(a, b, strict=True):
-        np.testing.assert_allclose(left, right, atol=1e-9)
+        np.testing.assert_allclose(left, right, rtol=1e-9, atol=1e-9)
     a = BatchedFilters().correct(*a, z, R, yaw, var)
     b = FilterpyFilters().correct(*b, z, R, yaw, var)
     for left, right in zip(a, b, strict=True):
-        np.testing.assert_allclose(left, right, atol=1e-9)
+        np.testing.assert_allclose(left, right, rtol=1e-9, atol=1e-9)
+
+
+def scalar_correct(x, P, z, R, yaw, var):
+    """One state, sigma points redrawn and sent through the measurement, plain sums (2.36-2.43)."""
+    q = 3 if np.isfinite(yaw) else 2
+    C = square_root(5 * P[None])[0][0]
+    points = np.array([x, *(x + C[:, i] for i in range(5)), *(x - C[:, i] for i in range(5))])
+    weights, noise = np.array([2.0] + [0.1] * 10), np.zeros((q, q))
+    noise[:2, :2] = R
+    if q == 3:
+        noise[2, 2] = var
+    seen = points[:, :q]
+    mean = 0.1 * seen[1:].sum(0)
+    P_z, P_xz = noise, np.zeros((5, q))
+    for w, point, s in zip(weights, points, seen, strict=True):
+        P_z = P_z + w * np.outer(s - mean, s - mean)
+        P_xz = P_xz + w * np.outer(point - x, s - mean)
+    K = P_xz @ np.linalg.inv(P_z)
+    return x + K @ (np.array([*z, yaw])[:q] - mean), P - K @ P_z @ K.T
+
+
+def test_correct_equals_a_scalar_unscented_update():
+    rng = np.random.default_rng(6)
+    x, P = random_states(rng, 20)
+    z, R = x[:, :2] + rng.normal(0, 0.5, (20, 2)), np.tile([[0.04, 0.01], [0.01, 0.09]], (20, 1, 1))
+    yaw = np.where(np.arange(20) % 3 == 0, np.nan, x[:, 2] + 0.05)
+    got = BatchedFilters().correct(x, P, z, R, yaw, np.full(20, 0.004))
+    for i in range(20):
+        mean, cov = scalar_correct(x[i], P[i], z[i], R[i], yaw[i], 0.004)
+        np.testing.assert_allclose(got[0][i], mean, rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(got[1][i], cov, rtol=1e-9, atol=1e-9)
 
 
 def test_models_are_the_printed_ones():
@@ -78,7 +111,7 @@ def test_models_are_the_printed_ones():
     np.testing.assert_allclose(ctrv, want, atol=1e-12)
     x[0, 4] = 1e-12
     cv = ConstantVelocity(1, 1).propagate(x, T)
-    np.testing.assert_allclose(ConstantTurn(1, 1).propagate(x, T)[0, :4], cv[0, :4], atol=1e-9)
+    np.testing.assert_allclose(ConstantTurn(1, 1).propagate(x, T)[0, :4], cv[0, :4], rtol=1e-9, atol=1e-9)
     assert cv[0, 4] == 0
     assert ConstantVelocity(1, 1, True).propagate(x, T)[0, 4] == 1e-12
     np.testing.assert_array_equal(RandomMotion(1, 1, 1).propagate(x, T), x)
@@ -110,8 +143,100 @@ def test_linear_motion_equals_the_kalman_filter():
         x, P = BatchedFilters().correct(x, P, z, 0.04 * np.eye(2)[None], np.array([np.nan]), np.ones(1))
         kf.predict()
         kf.update(z[0])
-    np.testing.assert_allclose(x[0], kf.x, atol=1e-9)
-    np.testing.assert_allclose(P[0], kf.P, atol=1e-9)
+    np.testing.assert_allclose(x[0], kf.x, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(P[0], kf.P, rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize("filters", [BatchedFilters(), FilterpyFilters()], ids=["batched", "filterpy"])
+def test_every_filter_is_the_kalman_filter_where_cv_is_linear(filters):
+    """A heading that is known leaves CV linear in place and speed along it."""
+    rng, T = np.random.default_rng(7), 0.1
+    for psi in (0.0, 0.7, -2.0):
+        A = rng.normal(0, 0.5, (3, 3))
+        x, P = np.array([[3.0, -2.0, psi, 8.0, 0.0]]), 1e-16 * np.eye(5)[None]
+        P[0][np.ix_([0, 1, 3], [0, 1, 3])] += A @ A.T
+        Q = MODELS[0].noise(x, T)[0]
+        kf = KalmanFilter(5, 2)
+        kf.F[0, 3], kf.F[1, 3], kf.F[4, 4] = T * np.cos(psi), T * np.sin(psi), 0
+        kf.x, kf.P, kf.H, kf.Q, kf.R = x[0].copy(), P[0].copy(), np.eye(2, 5), Q, 0.04 * np.eye(2)
+        z = np.array([4.0, -1.5])
+        x, P = filters.predict(MODELS[0], x, P, T)
+        kf.predict()
+        np.testing.assert_allclose(x[0], kf.x, rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(P[0], kf.P, rtol=1e-9, atol=1e-9)
+        x, P = filters.correct(x, P, z[None], kf.R[None], np.array([np.nan]), np.ones(1))
+        kf.update(z)
+        np.testing.assert_allclose(x[0], kf.x, rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(P[0], kf.P, rtol=1e-9, atol=1e-9)
+
+
+def test_an_imm_of_one_linear_model_thrice_is_the_kalman_filter():
+    config, model = TrackerConfig(), MODELS[2]
+    rng = np.random.default_rng(8)
+    x0, P0 = random_states(rng, 1)
+    kf = KalmanFilter(5, 2)
+    kf.x, kf.P, kf.H = x0[0].copy(), P0[0].copy(), np.eye(2, 5)
+    kf.Q, kf.R = model.noise(x0, 0.1)[0], 0.04 * np.eye(2)
+    x, P, mu = np.repeat(x0[:, None], 3, 1), np.repeat(P0[:, None], 3, 1), np.array([[0.6, 0.3, 0.1]])
+    for _ in range(20):
+        z = rng.normal(0, 1, (1, 2)) + x0[0, :2]
+        x, P, mu = mix(x, P, mu, transition(rates(config), 0.1))
+        for j in range(3):
+            x[:, j], P[:, j] = BatchedFilters().predict(model, x[:, j], P[:, j], 0.1)
+            x[:, j], P[:, j] = BatchedFilters().correct(
+                x[:, j], P[:, j], z, kf.R[None], np.array([np.nan]), np.ones(1)
+            )
+        kf.predict()
+        kf.update(z[0])
+    mean, cov = combine(x, P, mu)
+    np.testing.assert_allclose(mean[0], kf.x, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(cov[0], kf.P, rtol=1e-9, atol=1e-9)
+
+
+def test_new_tracks_are_filtered_by_the_kalman_filter():
+    config, rng = TrackerConfig(), np.random.default_rng(9)
+    one = Boxes([[1.0, 2, 0]], [[4.5, 1.8, 1.5]], [0.0])
+    new, T = Newborns.start(np.array([1]), 0.0, one, config), 0.1
+    kf = KalmanFilter(4, 2)
+    kf.x, kf.P, kf.H, kf.R = (
+        new.x[0].copy(),
+        new.P[0].copy(),
+        np.eye(2, 4),
+        config.position_std**2 * np.eye(2),
+    )
+    kf.F[0, 2] = kf.F[1, 3] = T
+    kf.Q = 2 * config.accel_density * np.kron([[T**3 / 3, T**2 / 2], [T**2 / 2, T]], np.eye(2))
+    for k in range(10):
+        place = np.array([1 + 0.8 * k, 2 - 0.3 * k, 0]) + rng.normal(0, 0.1, 3)
+        new.predict(T, config)
+        new.correct(np.array([0]), Boxes(place[None], one.size, one.yaw), config)
+        kf.predict()
+        kf.update(place[:2])
+    np.testing.assert_allclose(new.x[0], kf.x, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(new.P[0], kf.P, rtol=1e-9, atol=1e-9)
+
+
+def test_mixing_and_combining_equal_plain_sums_with_an_asymmetric_matrix():
+    """(2.44-2.47) and (2.53-2.54) written out, one track, the yaw far from +-pi."""
+    rng = np.random.default_rng(10)
+    p = np.array([[0.9, 0.07, 0.03], [0.2, 0.75, 0.05], [0.3, 0.1, 0.6]])
+    x, P = random_states(rng, 12)
+    x, P, mu = x.reshape(4, 3, 5), P.reshape(4, 3, 5, 5), rng.dirichlet(np.ones(3), 4)
+    got = mix(x, P, mu, p)
+    mean, cov = combine(x, P, mu)
+    for t in range(4):
+        for j in range(3):
+            mu_bar = sum(p[i, j] * mu[t, i] for i in range(3))
+            w = [p[i, j] * mu[t, i] / mu_bar for i in range(3)]
+            m = sum(w[i] * x[t, i] for i in range(3))
+            c = sum(w[i] * (P[t, i] + np.outer(x[t, i] - m, x[t, i] - m)) for i in range(3))
+            assert got[2][t, j] == pytest.approx(mu_bar, rel=1e-12)
+            np.testing.assert_allclose(got[0][t, j], m, rtol=1e-9, atol=1e-9)
+            np.testing.assert_allclose(got[1][t, j], c, rtol=1e-9, atol=1e-9)
+        m = sum(mu[t, i] * x[t, i] for i in range(3))
+        c = sum(mu[t, i] * (P[t, i] + np.outer(x[t, i] - m, x[t, i] - m)) for i in range(3))
+        np.testing.assert_allclose(mean[t], m, rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(cov[t], c, rtol=1e-9, atol=1e-9)
 
 
 def test_imm_equals_filterpys_with_an_asymmetric_matrix():
@@ -148,9 +273,9 @@ def test_imm_equals_filterpys_with_an_asymmetric_matrix():
             )
         mu = reweigh(mu, ratio)
         mean, cov = combine(x, P, mu)
-        np.testing.assert_allclose(mu[0], imm.mu, atol=1e-9)
-        np.testing.assert_allclose(mean[0], imm.x, atol=1e-9)
-        np.testing.assert_allclose(cov[0], imm.P, atol=1e-9)
+        np.testing.assert_allclose(mu[0], imm.mu, rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(mean[0], imm.x, rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(cov[0], imm.P, rtol=1e-9, atol=1e-9)
 
 
 def test_yaw_is_averaged_on_the_circle():

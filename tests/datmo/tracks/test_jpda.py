@@ -91,6 +91,28 @@ def test_a_pile_up_beyond_the_bound_is_cut_and_says_so():
     assert np.abs(bounded - exact).max() < 0.25
 
 
+def test_equal_links_are_cut_evenly():
+    """Sixteen tracks and sixteen boxes that nothing tells apart: nobody is left without."""
+    got, cut = marginals(np.ones((16, 16)), np.full(16, 0.1))
+    assert 0 < cut < 160
+    assert got[:, :16].sum(1).min() > 0.8
+    assert got[:, :16].sum(0).min() > 0.8
+
+
+def test_the_counted_form_is_bounded_in_memory_too():
+    """Forty tracks, each with twelve boxes that the next ones share, and a weight for each count."""
+    n = 40
+    rng = np.random.default_rng(4)
+    W = np.zeros((n, n + 11))
+    for i in range(n):
+        W[i, i : i + 12] = rng.lognormal(0, 1, 12)
+    phi = clutter_weights(n + 11, n, 50.0)
+    got, cut = marginals(W, np.full(n, 0.1), phi)
+    assert cut > 0
+    assert marginals(W, np.full(n, 0.1))[1] == 0
+    np.testing.assert_allclose(got.sum(1), 1, atol=1e-12)
+
+
 def test_relabelling_changes_nothing():
     rng = np.random.default_rng(2)
     W, miss = rng.lognormal(0, 2, (5, 6)), rng.uniform(0.1, 1, 5)
