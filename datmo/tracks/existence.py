@@ -26,7 +26,7 @@ def survive(existence: F64, dt: float, config: TrackerConfig) -> F64:
     """Existence (t,) before a scan, `dt` [s] after the last one: objects leave at a constant rate."""
     if config.association != "jipda":
         return existence
-    return np.maximum(existence * np.exp(-dt / config.survival_time), LEAST)
+    return np.asarray(np.maximum(existence * np.exp(-dt / config.survival_time), LEAST))
 
 
 def given_existence(links: Links, track: I64, prior: F64, found: F64) -> tuple[Links, F64]:

@@ -25,4 +25,5 @@ def nearest(pairs: Pairs, weight: F64, none: F64, boxes: int) -> tuple[F64, F64]
     chosen = np.zeros(gain.shape, np.bool_)
     chosen[linear_sum_assignment(gain, maximize=True)] = True
     chosen &= gain > 0
-    return chosen[pairs.track, pairs.box].astype(float), 1.0 - chosen.any(axis=1)
+    beta = chosen[pairs.track, pairs.box].astype(np.float64)
+    return beta, (~chosen.any(axis=1)).astype(np.float64)

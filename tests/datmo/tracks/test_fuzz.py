@@ -11,33 +11,45 @@ from datmo.tracks import Tracker, TrackerConfig
 
 METHODS = ("jpda", "pda", "gnn", "jipda")
 FEW, MANY, SEEDS = 60, 50_000, 5
-STEPS, CHANCES = (0.001, 0.1, 0.5, 5.0, 10.0), (0.05, 0.77, 0.1, 0.07, 0.01)
+STEPS, CHANCES = (0.001, 0.1, 0.5, 5.0, 10.0), (0.05, 0.855, 0.06, 0.03, 0.005)
 
 
 def scans(seed, count):
-    """Boxes near a few places that jump now and then, steps from a millisecond to ten seconds."""
+    """Boxes of six movers that leap now and then, and false ones; steps from a millisecond to ten seconds."""
     rng, stamp = np.random.default_rng(seed), 0.0
-    anchors, drift = rng.uniform(-30, 30, (6, 2)), rng.normal(0, 8, (6, 2))
+    place, drift = rng.uniform(-30, 30, (6, 2)), rng.normal(0, 6, (6, 2))
     for _ in range(count):
         step = float(rng.choice(STEPS, p=CHANCES))
         stamp += step
-        anchors = anchors + step * drift
-        far = np.abs(anchors).max(axis=1) > 60
-        drift[far] = -np.sign(anchors[far]) * np.abs(drift[far])
-        if rng.random() < 0.01:
-            anchors = anchors + rng.normal(0, 30, 2)
-        n = int(rng.integers(0, 9))
-        center = np.column_stack([anchors[rng.integers(0, 6, n)] + rng.normal(0, 0.7, (n, 2)), np.zeros(n)])
-        size, yaw = rng.lognormal(0.5, 0.7, (n, 3)), rng.uniform(-9, 9, n)
+        drift += rng.normal(0, 1, (6, 2)) * np.sqrt(step)
+        place = place + step * drift
+        far = np.abs(place) > 60
+        place, drift = np.clip(place, -60, 60), np.where(far, -0.5 * np.sign(place) * np.abs(drift), drift)
+        if rng.random() < 0.003:
+            place = place + rng.normal(0, 30, 2)
+        seen, false = np.flatnonzero(rng.random(6) < 0.85), rng.poisson(1.5)
+        n = len(seen) + false
+        center = np.zeros((n, 3))
+        center[:, :2] = np.vstack(
+            [place[seen] + rng.normal(0, 0.2, (len(seen), 2)), rng.uniform(-60, 60, (false, 2))]
+        )
+        course = np.arctan2(drift[seen, 1], drift[seen, 0]) + rng.normal(0, 0.1, len(seen))
+        yaw = np.concatenate([course, rng.uniform(-9, 9, false)]) + np.pi * rng.integers(0, 2, n)
+        size = np.array([4.0, 1.8, 1.5]) * rng.lognormal(0, 0.3, (n, 3))
         if n and rng.random() < 0.02:
             size[0, rng.integers(3)] = rng.choice([np.nan, 0.0, -1.0, np.inf])
         yield Boxes(center=center, size=size, yaw=yaw), stamp
 
 
 def play(seed, count, name):
-    tracker = Tracker(TrackerConfig(association=name, max_coast=6.0))
+    """Tracks live through gaps however uncertain they become; some are confirmed, or nothing is tried."""
+    config = TrackerConfig(association=name, max_coast=6.0, max_position_std=200.0, dead_existence=1e-4)
+    tracker, confirmed = Tracker(config), 0
     for boxes, stamp in scans(seed, count):
-        assert_sound(tracker.step(boxes, stamp))
+        tracks = tracker.step(boxes, stamp)
+        assert_sound(tracks)
+        confirmed += int(tracks.confirmed().sum())
+    assert confirmed > count
 
 
 def assert_sound(tracks):
