@@ -26,4 +26,4 @@ def nearest(pairs: Pairs, weight: F64, none: F64, boxes: int) -> tuple[F64, F64]
     chosen[linear_sum_assignment(gain, maximize=True)] = True
     chosen &= gain > 0
     beta = chosen[pairs.track, pairs.box].astype(np.float64)
-    return beta, (~chosen.any(axis=1)).astype(np.float64)
+    return beta, np.asarray(~chosen.any(axis=1), np.float64)
