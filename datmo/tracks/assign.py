@@ -6,11 +6,13 @@ import numpy as np
 
 from datmo.arrays import F64
 from datmo.messages import Boxes, Sight
-from datmo.tracks.associate import Links, associate
+from datmo.tracks.associate import associate
 from datmo.tracks.bank import Bank
 from datmo.tracks.box import read
 from datmo.tracks.config import TrackerConfig
+from datmo.tracks.existence import given_existence
 from datmo.tracks.gate import Pairs, densities, gate, near, size_ratios, sure_yaw, yaw_ratios
+from datmo.tracks.pda import Links
 from datmo.tracks.ukf import inverse_2x2
 
 LEAST_WEIGHT = 1e-200
@@ -21,7 +23,8 @@ def assign(
 ) -> tuple[Pairs, Links, F64]:
     """Gated pairs, their probabilities, and each pair's mode likelihood over their mean (p, m).
 
-    P_D is that of full view times the share `visible` (t,), with a floor.
+    P_D is that of full view times the share `visible` (t,), with a floor. Probabilities are those of
+    tracks that exist; `bank.existence` is brought up to date.
     """
     reach = bank.size[:, 0] / 2 if sight is not None else np.zeros(len(bank))
     pairs = read(bank, mean, boxes, *near(mean, P, boxes.center, reach, config), sight, config)
@@ -33,10 +36,12 @@ def assign(
         shape = size_ratios(pairs, bank.size)
     density = np.einsum("pm,pm->p", by_mode, bank.mu[pairs.track])
     detection = config.detection_prob * np.maximum(visible, config.visible_floor)
-    miss = 1 - detection * config.gate_prob
-    weight = np.maximum(detection[pairs.track] * density * shape, LEAST_WEIGHT)
+    found = detection * config.gate_prob
+    miss = 1 - bank.existence * found
+    weight = np.maximum((bank.existence * detection)[pairs.track] * density * shape, LEAST_WEIGHT)
     S = P[:, :2, :2] + config.position_std**2 * np.eye(2)
     links = associate(pairs, weight, miss, len(boxes), config, S, mean[:, :2])
+    links, bank.existence = given_existence(links, pairs.track, bank.existence, found)
     return pairs, links, by_mode / np.maximum(density, LEAST_WEIGHT)[:, None]
 
 

@@ -1,8 +1,11 @@
-"""From gated pairs to association probabilities: independent groups, each summed exactly."""
+"""From gated pairs to association probabilities, by the method that the configuration names.
+
+"jpda" and "jipda": independent groups, each summed exactly; they differ in the weights that they are
+given (`existence.py`). "pda": each track by itself. "gnn": the one best joint event.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import lgamma
 
 import numpy as np
@@ -13,37 +16,42 @@ from datmo.arrays import F64, I64
 from datmo.tracks.config import TrackerConfig
 from datmo.tracks.gate import Pairs
 from datmo.tracks.jpda import marginals
+from datmo.tracks.nearest import nearest
+from datmo.tracks.pda import Links, pda, unassigned
 
 RASTER = 160  # cells a side for the area of several gates together
-
-
-@dataclass
-class Links:
-    """Marginals: beta (p,) of each pair, missed (t,) of none; and how many links were cut."""
-
-    beta: F64
-    missed: F64
-    cut: int
 
 
 def associate(
     pairs: Pairs, weight: F64, miss: F64, boxes: int, config: TrackerConfig, S: F64, at: F64
 ) -> Links:
-    """Exact marginals of the joint events (2.69 with 1 - P_D P_G).
+    """Association probabilities; those of "jpda" are exact marginals (2.69 with 1 - P_D P_G).
 
     Args:
         pairs: gated pairs.
         weight: (p,) P_D N(nu) [1/m²] times what size and heading say.
         miss: (t,) 1 - P_D P_G.
         boxes: number of boxes.
-        config: form and density of the clutter.
+        config: method, form and density of the clutter.
         S: (t, 2, 2), at: (t, 2) gates, for their area in the non-parametric form.
     """
-    beta, cut = np.zeros(len(pairs)), 0
     if config.clutter == "poisson":
         weight = weight / config.clutter_density
+    if config.association == "pda":
+        return Links(*pda(pairs, weight, unassigned(pairs, miss, config)), 0)
+    if config.association == "gnn":
+        return Links(*nearest(pairs, weight, unassigned(pairs, miss, config), boxes), 0)
+    return _jointly(pairs, weight, miss, boxes, config, S, at)
+
+
+def _jointly(
+    pairs: Pairs, weight: F64, miss: F64, boxes: int, config: TrackerConfig, S: F64, at: F64
+) -> Links:
+    """Marginals of the joint events of each group of tracks; closed form for tracks alone."""
+    beta, cut = np.zeros(len(pairs)), 0
     alone, crowds = groups(pairs, len(miss), boxes)
-    beta[alone], missed = _pda(pairs.select(alone), weight[alone], miss, config)
+    lone = pairs.select(alone)
+    beta[alone], missed = pda(lone, weight[alone], unassigned(lone, miss, config))
     for rows in crowds:
         track, local = np.unique(pairs.track[rows], return_inverse=True)
         box, column = np.unique(pairs.box[rows], return_inverse=True)
@@ -72,18 +80,6 @@ def groups(pairs: Pairs, tracks: int, boxes: int) -> tuple[I64, list[I64]]:
     order = rows[np.argsort(of_pair[rows], kind="stable")]
     split = np.split(order, np.flatnonzero(np.diff(of_pair[order])) + 1) if len(order) else []
     return np.flatnonzero(~crowded), list(split)
-
-
-def _pda(pairs: Pairs, weight: F64, miss: F64, config: TrackerConfig) -> tuple[F64, F64]:
-    """The closed form for tracks alone: beta (p,) and missed (t,); in the non-parametric form
-    m_k / V stands where the clutter density does in Poisson's.
-    """
-    none = miss.copy()
-    if config.clutter == "nonparametric":
-        count = np.bincount(pairs.track, minlength=len(miss))
-        none[pairs.track] *= count[pairs.track] / pairs.volume
-    total = none + np.bincount(pairs.track, weights=weight, minlength=len(miss))
-    return weight / total[pairs.track], np.asarray(none / total)
 
 
 def clutter_weights(boxes: int, most: int, volume: float) -> F64:

@@ -21,6 +21,7 @@ class Bank:
         fresh: (t,) whether the last scan hit it.
         x: (t, m, n), P: (t, m, n, n), mu: (t, m) of each mode.
         missed: (t,) time without a hit where it should have been seen [s].
+        existence: (t,) probability that there is such an object; 1 unless "jipda" is asked for.
         size: (t, 3) retained dimensions [m]. yaw: (t,) heading of the box [rad].
         z: (t,) height of the box's middle [m], climb: (t,) its rate [m/s].
         score: (t,), kind: (t,) of the last box.
@@ -36,6 +37,7 @@ class Bank:
     P: F64
     mu: F64
     missed: F64
+    existence: F64
     size: F64
     yaw: F64
     z: F64
@@ -56,7 +58,7 @@ class Bank:
         x, P, mu = np.zeros((0, modes, size)), np.zeros((0, modes, size, size)), np.zeros((0, modes))
         flag, past = np.zeros(0, np.bool_), np.zeros((0, HISTORY, 4))
         return cls(
-            whole, real, real, flag, x, P, mu, real, np.zeros((0, 3)),
+            whole, real, real, flag, x, P, mu, real, real, np.zeros((0, 3)),
             real, real, real, real, whole, flag, real, past,
         )  # fmt: skip
 

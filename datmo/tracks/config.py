@@ -48,6 +48,10 @@ class TrackerConfig(BaseModel):
     birth_score: float = Field(0.0, description="boxes with a lower score start no track")
 
     # Association (12)
+    association: Literal["jpda", "pda", "gnn", "jipda"] = Field(
+        "jpda",
+        description="joint PDA; each track by itself; global nearest neighbour; joint PDA with existence",
+    )
     gate_chi2: float = Field(13.8, gt=0, description="gate on the squared Mahalanobis distance, q = 2")
     detection_prob: float = Field(0.9, gt=0, lt=1, description="P_D of an object in full view")
     gate_prob: float = Field(0.999, gt=0, lt=1, description="P_G, probability of the gate")
@@ -56,6 +60,10 @@ class TrackerConfig(BaseModel):
     clutter_density: float = Field(0.005, gt=0, description="false boxes [1/m²], Poisson form")
     weigh_shape: bool = Field(True, description="size and heading weigh the association")
     max_frontier: int = Field(14, ge=2, le=20, description="bits of the exact association's widest cut")
+
+    born_existence: float = Field(0.95, gt=0, le=1, description="jipda: existence of a confirmed track")
+    dead_existence: float = Field(0.02, ge=1e-5, lt=1, description="jipda: existence at which a track dies")
+    survival_time: float = Field(30.0, gt=0, description="jipda: mean stay of an object [s]")
 
     # Births and deaths (13)
     confirm_hits: int = Field(5, ge=2, le=5, description="associations that confirm a track")
@@ -83,6 +91,15 @@ class TrackerConfig(BaseModel):
     whole_gain: float = Field(0.2, ge=0, le=1, description="gain either way where both ends are real")
     correct_ends: bool = Field(True, description="move partial boxes to where the whole one is")
     partial_std: float = Field(0.15, ge=0, description="extra deviation per metre of missing extent")
+
+    @model_validator(mode="after")
+    def _existence(self) -> Self:
+        if self.born_existence <= self.dead_existence:
+            raise ValueError(
+                f"born_existence {self.born_existence} must exceed dead_existence {self.dead_existence}, "
+                "or tracks die as they are confirmed"
+            )
+        return self
 
     @model_validator(mode="after")
     def _rates(self) -> Self:

@@ -6,11 +6,12 @@ import numpy as np
 
 from datmo.arrays import F64, Bool
 from datmo.messages import Boxes
-from datmo.tracks.associate import Links
 from datmo.tracks.bank import HISTORY, Bank
 from datmo.tracks.birth import Newborns
 from datmo.tracks.config import TrackerConfig
+from datmo.tracks.existence import at_birth
 from datmo.tracks.gate import Pairs
+from datmo.tracks.pda import Links
 
 NEW_ACCEL_STD = 1.0  # [m/s²] of a track just confirmed
 
@@ -20,7 +21,7 @@ def unclaimed(
 ) -> Bool:
     """(k,) boxes that may start a track: in no track's hands, and not a splinter inside one."""
     claimed = np.zeros(len(boxes))
-    np.add.at(claimed, pairs.box, links.beta)
+    np.add.at(claimed, pairs.box, links.beta * bank.existence[pairs.track])
     gap = boxes.center[:, None, :2] - mean[None, hit, :2]
     c, s = np.cos(bank.yaw[hit]), np.sin(bank.yaw[hit])
     along, across = gap[..., 0] * c + gap[..., 1] * s, gap[..., 1] * c - gap[..., 0] * s
@@ -46,6 +47,7 @@ def as_bank(new: Newborns, stamp: float, size: int, config: TrackerConfig) -> Ba
         P=np.repeat(P[:, None], m, axis=1),
         mu=np.full((n, m), 1 / m),
         missed=np.zeros(n),
+        existence=at_birth(n, config),
         size=new.size,
         yaw=x[:, 2].copy(),
         z=new.z,

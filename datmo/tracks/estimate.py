@@ -6,13 +6,13 @@ import numpy as np
 
 from datmo.arrays import F64, Bool
 from datmo.geometry import wrap_angle
-from datmo.tracks.associate import Links
 from datmo.tracks.bank import Bank
 from datmo.tracks.config import TrackerConfig
 from datmo.tracks.filters import Filters
 from datmo.tracks.gate import Pairs
 from datmo.tracks.imm import combine, lend, mix, rates, reweigh, transition
 from datmo.tracks.models import ACCEL, OMEGA, PSI, make_models, state_size
+from datmo.tracks.pda import Links
 from datmo.tracks.ukf import residual, tame
 
 LONGEST_STEP = 0.5  # [s] longer gaps are predicted in parts

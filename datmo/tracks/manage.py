@@ -7,6 +7,7 @@ import numpy as np
 from datmo.arrays import F64, U8, Bool
 from datmo.geometry import wrap_angle
 from datmo.messages import Status
+from datmo.tracks import existence
 from datmo.tracks.bank import Bank
 from datmo.tracks.config import TrackerConfig
 from datmo.tracks.models import PSI, V
@@ -18,6 +19,8 @@ BACKWARD_SPEED, BACKWARD_TIME = 1.0, 1.0  # who reverses faster and longer than 
 
 def spent(bank: Bank, stamp: float, dt: float, has_sight: bool, config: TrackerConfig) -> F64:
     """Share (t,) of its life without hits that each track has used up; from 1 on it is dead."""
+    if config.association == "jipda":
+        return existence.spent(bank, config)
     if not has_sight:
         return np.asarray((stamp - bank.seen) / max(config.max_coast, 1.5 * dt))
     return np.asarray(np.maximum(bank.missed / config.max_missed, (stamp - bank.seen) / config.max_hidden))

@@ -18,6 +18,7 @@ from datmo.tracks.config import TrackerConfig
 from datmo.tracks.confirm import as_bank, take_over, unclaimed
 from datmo.tracks.engine_filterpy import FilterpyFilters
 from datmo.tracks.estimate import Estimator
+from datmo.tracks.existence import survive
 from datmo.tracks.filters import Filters
 from datmo.tracks.recall import recall
 from datmo.tracks.report import as_tracks, predicted_boxes
@@ -139,6 +140,7 @@ class Tracker:
         self._new.predict(dt, self.config)
         if len(self._lost):
             self._estimator.predict(self._lost, dt)
+        self._bank.existence = survive(self._bank.existence, dt, self.config)
         return self._estimator.predict(self._bank, dt)
 
     def _expect(self, mean: F64, P: F64, sight: Sight | None) -> tuple[F64, F64]:

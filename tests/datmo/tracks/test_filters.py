@@ -1,10 +1,10 @@
-"""UKF, models and IMM against filterpy, a scalar reference and the Kalman filter."""
+"""UKF, models and IMM against filterpy and a scalar reference."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-from filterpy.kalman import IMMEstimator, KalmanFilter, MerweScaledSigmaPoints, UnscentedKalmanFilter
+from filterpy.kalman import IMMEstimator, MerweScaledSigmaPoints, UnscentedKalmanFilter
 from scipy.linalg import expm
 
 from datmo.geometry import wrap_angle
@@ -58,34 +58,70 @@ def test_batched_equals_scalar_and_filterpy(model, size):
     for i in range(20):
         mean, cov = scalar_predict(model, x[i], P[i], 0.1)
         one = BatchedFilters().predict(model, x[i : i + 1], P[i : i + 1], 0.1)
-        np.testing.assert_allclose(one[0][0], mean, atol=1e-9)
-        np.testing.assert_allclose(one[1][0], cov, atol=1e-9)
+        np.testing.assert_allclose(one[0][0], mean, rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(one[1][0], cov, rtol=1e-9, atol=1e-9)
     a = BatchedFilters().predict(model, x, P, 0.1)
     b = FilterpyFilters().predict(model, x, P, 0.1)
     for left, right in zip(a, b, strict=True):
-        np.testing.assert_allclose(left, right, atol=1e-9)
+        np.testing.assert_allclose(left, right, rtol=1e-9, atol=1e-9)
     a = BatchedFilters().correct(*a, z, R, yaw, var)
     b = FilterpyFilters().correct(*b, z, R, yaw, var)
     for left, right in zip(a, b, strict=True):
-        np.testing.assert_allclose(left, right, atol=1e-9)
+        np.testing.assert_allclose(left, right, rtol=1e-9, atol=1e-9)
 
 
-def test_linear_motion_equals_the_kalman_filter():
-    """RM is linear, and so is the measurement: nothing is left to the sigma points."""
-    model = MODELS[2]
-    rng = np.random.default_rng(1)
-    x, P = random_states(rng, 1)
-    kf = KalmanFilter(5, 2)
-    kf.x, kf.P, kf.H = x[0].copy(), P[0].copy(), np.eye(2, 5)
-    kf.Q, kf.R = model.noise(x, 0.1)[0], 0.04 * np.eye(2)
-    for _ in range(20):
-        z = rng.normal(0, 1, (1, 2)) + x[0, :2]
-        x, P = BatchedFilters().predict(model, x, P, 0.1)
-        x, P = BatchedFilters().correct(x, P, z, 0.04 * np.eye(2)[None], np.array([np.nan]), np.ones(1))
-        kf.predict()
-        kf.update(z[0])
-    np.testing.assert_allclose(x[0], kf.x, atol=1e-9)
-    np.testing.assert_allclose(P[0], kf.P, atol=1e-9)
+def scalar_correct(x, P, z, R, yaw, var):
+    """One state, sigma points redrawn and sent through the measurement, plain sums (2.36-2.43)."""
+    q = 3 if np.isfinite(yaw) else 2
+    C = square_root(5 * P[None])[0][0]
+    points = np.array([x, *(x + C[:, i] for i in range(5)), *(x - C[:, i] for i in range(5))])
+    weights, noise = np.array([2.0] + [0.1] * 10), np.zeros((q, q))
+    noise[:2, :2] = R
+    if q == 3:
+        noise[2, 2] = var
+    seen = points[:, :q]
+    mean = 0.1 * seen[1:].sum(0)
+    P_z, P_xz = noise, np.zeros((5, q))
+    for w, point, s in zip(weights, points, seen, strict=True):
+        P_z = P_z + w * np.outer(s - mean, s - mean)
+        P_xz = P_xz + w * np.outer(point - x, s - mean)
+    K = P_xz @ np.linalg.inv(P_z)
+    return x + K @ (np.array([*z, yaw])[:q] - mean), P - K @ P_z @ K.T
+
+
+def test_correct_equals_a_scalar_unscented_update():
+    rng = np.random.default_rng(6)
+    x, P = random_states(rng, 20)
+    z, R = x[:, :2] + rng.normal(0, 0.5, (20, 2)), np.tile([[0.04, 0.01], [0.01, 0.09]], (20, 1, 1))
+    yaw = np.where(np.arange(20) % 3 == 0, np.nan, x[:, 2] + 0.05)
+    got = BatchedFilters().correct(x, P, z, R, yaw, np.full(20, 0.004))
+    for i in range(20):
+        mean, cov = scalar_correct(x[i], P[i], z[i], R[i], yaw[i], 0.004)
+        np.testing.assert_allclose(got[0][i], mean, rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(got[1][i], cov, rtol=1e-9, atol=1e-9)
+
+
+def test_mixing_and_combining_equal_plain_sums_with_an_asymmetric_matrix():
+    """(2.44-2.47) and (2.53-2.54) written out, one track, the yaw far from +-pi."""
+    rng = np.random.default_rng(10)
+    p = np.array([[0.9, 0.07, 0.03], [0.2, 0.75, 0.05], [0.3, 0.1, 0.6]])
+    x, P = random_states(rng, 12)
+    x, P, mu = x.reshape(4, 3, 5), P.reshape(4, 3, 5, 5), rng.dirichlet(np.ones(3), 4)
+    got = mix(x, P, mu, p)
+    mean, cov = combine(x, P, mu)
+    for t in range(4):
+        for j in range(3):
+            mu_bar = sum(p[i, j] * mu[t, i] for i in range(3))
+            w = [p[i, j] * mu[t, i] / mu_bar for i in range(3)]
+            m = sum(w[i] * x[t, i] for i in range(3))
+            c = sum(w[i] * (P[t, i] + np.outer(x[t, i] - m, x[t, i] - m)) for i in range(3))
+            assert got[2][t, j] == pytest.approx(mu_bar, rel=1e-12)
+            np.testing.assert_allclose(got[0][t, j], m, rtol=1e-9, atol=1e-9)
+            np.testing.assert_allclose(got[1][t, j], c, rtol=1e-9, atol=1e-9)
+        m = sum(mu[t, i] * x[t, i] for i in range(3))
+        c = sum(mu[t, i] * (P[t, i] + np.outer(x[t, i] - m, x[t, i] - m)) for i in range(3))
+        np.testing.assert_allclose(mean[t], m, rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(cov[t], c, rtol=1e-9, atol=1e-9)
 
 
 def test_imm_equals_filterpys_with_an_asymmetric_matrix():
@@ -122,9 +158,9 @@ def test_imm_equals_filterpys_with_an_asymmetric_matrix():
             )
         mu = reweigh(mu, ratio)
         mean, cov = combine(x, P, mu)
-        np.testing.assert_allclose(mu[0], imm.mu, atol=1e-9)
-        np.testing.assert_allclose(mean[0], imm.x, atol=1e-9)
-        np.testing.assert_allclose(cov[0], imm.P, atol=1e-9)
+        np.testing.assert_allclose(mu[0], imm.mu, rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(mean[0], imm.x, rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(cov[0], imm.P, rtol=1e-9, atol=1e-9)
 
 
 def test_yaw_is_averaged_on_the_circle():

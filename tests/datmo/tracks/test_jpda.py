@@ -7,10 +7,11 @@ from math import factorial
 import numpy as np
 import pytest
 
-from datmo.tracks.associate import _pda, associate, clutter_weights, groups
+from datmo.tracks.associate import associate, clutter_weights, groups
 from datmo.tracks.config import TrackerConfig
 from datmo.tracks.gate import Pairs
 from datmo.tracks.jpda import marginals
+from datmo.tracks.pda import pda, unassigned
 
 
 def brute(W, miss, phi=None):
@@ -43,7 +44,7 @@ def test_marginals_equal_brute_force(seed, counted):
     phi = clutter_weights(c, min(r, c), 7.3) if counted else None
     got, cut = marginals(W, miss, phi)
     assert cut == 0
-    np.testing.assert_allclose(got, brute(W, miss, phi), atol=1e-10)
+    np.testing.assert_allclose(got, brute(W, miss, phi), rtol=0, atol=1e-10)
     np.testing.assert_allclose(got.sum(1), 1, atol=1e-12)
 
 
@@ -88,6 +89,28 @@ def test_a_pile_up_beyond_the_bound_is_cut_and_says_so():
     assert cut > 0
     np.testing.assert_allclose(bounded.sum(1), 1, atol=1e-12)
     assert np.abs(bounded - exact).max() < 0.25
+
+
+def test_equal_links_are_cut_evenly():
+    """Sixteen tracks and sixteen boxes that nothing tells apart: nobody is left without."""
+    got, cut = marginals(np.ones((16, 16)), np.full(16, 0.1))
+    assert 0 < cut < 160
+    assert got[:, :16].sum(1).min() > 0.8
+    assert got[:, :16].sum(0).min() > 0.8
+
+
+def test_the_counted_form_is_bounded_in_memory_too():
+    """Forty tracks, each with twelve boxes that the next ones share, and a weight for each count."""
+    n = 40
+    rng = np.random.default_rng(4)
+    W = np.zeros((n, n + 11))
+    for i in range(n):
+        W[i, i : i + 12] = rng.lognormal(0, 1, 12)
+    phi = clutter_weights(n + 11, n, 50.0)
+    got, cut = marginals(W, np.full(n, 0.1), phi)
+    assert cut > 0
+    assert marginals(W, np.full(n, 0.1))[1] == 0
+    np.testing.assert_allclose(got.sum(1), 1, atol=1e-12)
 
 
 def test_relabelling_changes_nothing():
@@ -152,6 +175,6 @@ def test_groups_are_independent():
 
 def test_tracks_without_a_box_are_missed():
     none = some_pairs([0], [0]).select(np.zeros(0, int))
-    beta, missed = _pda(none, np.zeros(0), np.ones(2), TrackerConfig())
+    beta, missed = pda(none, np.zeros(0), unassigned(none, np.ones(2), TrackerConfig()))
     assert len(beta) == 0
     assert missed.tolist() == [1, 1]
