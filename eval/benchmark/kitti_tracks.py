@@ -64,7 +64,7 @@ def drives(folder: Path) -> list[str]:
     """
     names = sorted(path.stem for path in (folder / "detections").glob("*.txt"))
     if not names:
-        raise CloudFileError(f"{folder}: no detections/*.txt there; give a folder of KITTI tracking sequences")
+        raise CloudFileError(f"{folder}: no detections/*.txt there; give a folder of KITTI sequences")
     return names
 
 
@@ -104,7 +104,9 @@ def read_detections(path: Path, frames: int) -> tuple[I64, Boxes]:
             rows.append(values[6:14])
             _check_sides(path, i, values[7:10])
     table = np.array(rows).reshape(-1, 8)
-    return np.array(frame, np.int64), _boxes(table[:, 1:], score=table[:, 0], kind=np.full(len(rows), Kind.CAR))
+    return np.array(frame, np.int64), _boxes(
+        table[:, 1:], score=table[:, 0], kind=np.full(len(rows), Kind.CAR)
+    )
 
 
 def read_labels(path: Path, frames: int) -> tuple[I64, Boxes]:
@@ -122,7 +124,9 @@ def read_labels(path: Path, frames: int) -> tuple[I64, Boxes]:
     return np.array(frame, np.int64), _boxes(table, ids=np.array(ids, np.int64), kind=np.array(kinds))
 
 
-def _boxes(table: F64, score: Array | None = None, ids: Array | None = None, kind: Array | None = None) -> Boxes:
+def _boxes(
+    table: F64, score: Array | None = None, ids: Array | None = None, kind: Array | None = None
+) -> Boxes:
     """Boxes of rows h, w, l, x, y, z, ry in camera axes: (x, y, z) the middle, yaw = ry."""
     middle = table[:, 3:6] - np.column_stack([np.zeros(len(table)), table[:, 0] / 2, np.zeros(len(table))])
     return Boxes(middle, table[:, [2, 1, 0]], table[:, 6], score=score, id=ids, kind=kind)  # type: ignore[arg-type]
@@ -160,7 +164,7 @@ def _numbers(path: Path, line: int, words: Sequence[str], count: int) -> F64:
 
 def _frame(path: Path, line: int, value: float, frames: int) -> int:
     if value != int(value) or not 0 <= value < frames:
-        raise CloudFileError(f"{path}, line {line}: frame {value:g}; frames go from 0 to {frames - 1}, as poses")
+        raise CloudFileError(f"{path}, line {line}: frame {value:g}; frames go from 0 to {frames - 1}")
     return int(value)
 
 

@@ -44,9 +44,7 @@ class RealScores:
     milliseconds: float = float("nan")
 
 
-def score_real(
-    contestants: Mapping[str, Rival], played: Sequence[Drive]
-) -> dict[str, dict[str, RealScores]]:
+def score_real(contestants: Mapping[str, Rival], played: Sequence[Drive]) -> dict[str, dict[str, RealScores]]:
     """Figures of each contestant, by sequence, and over all of them under "all".
 
     Raises:
@@ -121,7 +119,7 @@ def _metrics() -> dict[str, Any]:
     try:
         from trackeval.metrics import CLEAR, HOTA, Identity
     except ImportError:
-        raise ConfigError("trackeval is not installed; it scores real tracks: pip install trackeval") from None
+        raise ConfigError("trackeval is not installed, and it scores tracks; pip install trackeval") from None
     config = {"THRESHOLD": LEAST_OVERLAP, "PRINT_CONFIG": False}
     return {"hota": HOTA(), "clear": CLEAR(config), "identity": Identity(config)}
 

@@ -13,7 +13,7 @@ TOUCH = 1e-9  # a corner this near to an edge lies on it [m]
 
 def iou_3d(a: Boxes, b: Boxes) -> F64:
     """Intersection over union (n, m) of the volumes of two sets of boxes, 0..1, each at its yaw."""
-    reach = np.hypot(a.size[:, None, 0], a.size[:, None, 1]) + np.hypot(b.size[None, :, 0], b.size[None, :, 1])
+    reach = np.hypot(*a.size[:, :2].T)[:, None] + np.hypot(*b.size[:, :2].T)
     gap = np.linalg.norm(a.center[:, None, :2] - b.center[None, :, :2], axis=2)
     i, j = np.nonzero(gap < reach / 2)
     area = shared_area(
