@@ -172,7 +172,7 @@ class Tracker:
     def _settle(self, has_sight: bool) -> Tracks:
         """Confirm, recall, bury; what is alive now."""
         config, stamp = self.config, float(self._stamp or 0.0)
-        ripe = self._new.hits >= config.confirm_hits
+        ripe = self._new.ripe(config)
         grown, self._new = as_bank(self._new.select(ripe), stamp, config), self._new.select(~ripe)
         pool = self._bank.join(self._lost)
         mean, P = self._estimator.combined(pool)
