@@ -109,7 +109,8 @@ class Newborns:
 
     def ripe(self, config: TrackerConfig) -> Bool:
         """(n,) whether each is to be confirmed: by enough hits, or sooner by high scores."""
-        return np.asarray((self.hits >= config.confirm_hits) | (self.evidence >= config.confirm_score))
+        enough = np.inf if config.confirm_score is None else config.confirm_score
+        return np.asarray((self.hits >= config.confirm_hits) | (self.evidence >= enough))
 
     def polar(self, config: TrackerConfig) -> tuple[F64, F64, F64]:
         """State (n, 5), covariance (n, 5, 5) over (x, y, yaw, speed, yaw rate), box heading (n,).

@@ -22,7 +22,7 @@ ABLATIONS: Mapping[str, Mapping[str, Any]] = {
     "clutter by volume": {"clutter": "nonparametric"},
     "no second stage": {"recall": False},
     "crowds cut to two boxes": {"max_frontier": 2},
-    "five hits confirm": {"confirm_hits": 5, "confirm_score": float("inf")},
+    "five hits confirm": {"confirm_hits": 5, "confirm_score": None},
     "any score starts a track": {"birth_score": 0.0},
     "one miss is death": {"max_coast": 0.1},
     "life of half a second": {"max_coast": 0.5},
