@@ -152,6 +152,18 @@ class PlainKalman:
         self._boxes = Boxes(self._p, size, np.concatenate([self._boxes.yaw[kept], born.yaw]), id=ids)
 
 
+def rivals() -> dict[str, Rival]:
+    """All that are compared, by name."""
+    return {
+        "ours": Ours(POINT_RCNN),
+        "ours, with what coasts": Ours(POINT_RCNN, coasting=True),
+        "ours, as it comes": Ours(),
+        "thesis": Ours(THESIS),
+        "Kalman": PlainKalman(),
+        "Kalman, with what coasts": PlainKalman(coasting=True),
+    }
+
+
 def _half_turn(angle: F64) -> F64:
     """Angles [rad] brought into [-pi/2, pi/2) by half turns: a box has no front."""
     return np.asarray((angle + np.pi / 2) % np.pi - np.pi / 2)

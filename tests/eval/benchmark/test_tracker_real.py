@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from eval.benchmark.kitti_tracks import Drive, read_drive
 from eval.benchmark.tracker_ablation import ABLATIONS, WHOLE, ablate
 from eval.benchmark.tracker_real import score_real
 from eval.benchmark.tracker_rivals import THESIS, Ours, PlainKalman, Rival
+from eval.cli import BAD_INPUT, DONE, call
 
 FRAMES = 20
 
@@ -112,3 +114,30 @@ def test_a_real_sequence(real_data: Path) -> None:
     assert scores["ours"]["all"].hota > 0.5
     assert scores["ours"]["all"].switches == 0
     assert scores["kalman"]["all"].hota > 0.4
+
+
+def made_folder(base: Path, frames: int) -> Path:
+    """One car ahead that drives off at 10 m/s before a camera that stands."""
+    lines: dict[str, list[str]] = {"detections": [], "labels": [], "poses": []}
+    for k in range(frames):
+        box = ["1.5", "1.8", "4", "0", "1.7", str(10.0 + k), "-1.5707963"]
+        lines["detections"].append(",".join([str(k), "2", "0", "0", "9", "9", "9.0", *box, "0"]))
+        lines["labels"].append(" ".join([str(k), "3", "Car", "0", "0", "0", "0", "0", "9", "9", *box]))
+        lines["poses"].append("1 0 0 0 0 1 0 0 0 0 1 0")
+    for part, text in lines.items():
+        (base / "real" / "tracks" / part).mkdir(parents=True)
+        (base / "real" / "tracks" / part / "0042.txt").write_text("\n".join(text) + "\n")
+    return base
+
+
+def test_the_command_leaves_its_figures(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out, data = tmp_path / "tracker", made_folder(tmp_path / "data", 12)
+    asked = ["benchmark", "tracker", "--sequence", "0042", "--real", str(data), "--out", str(out)]
+    assert call(asked) == DONE
+    assert "Kalman" in capsys.readouterr().out
+    written = json.loads((out / "tracker.json").read_text())
+    assert set(written["trackers"]["ours"]) == {"all", "0042"}
+    assert written["trackers"]["ours"]["all"]["missed"] == 0  # its score confirms it at once
+    assert "| thesis |" in (out / "tracker.md").read_text()
+    assert call(["benchmark", "tracker", "--real", str(tmp_path)]) == BAD_INPUT
+    assert "give a folder of KITTI" in capsys.readouterr().err
