@@ -26,7 +26,10 @@ TELLING_SPEED = 1.5  # [m/s] from which motion tells the heading
 
 @dataclass
 class Newborns:
-    """Tracks of status 1-4, n rows: x (n, 4) px, py, vx, vy; hits and misses; the last box."""
+    """Tracks of status 1-4, n rows: x (n, 4) px, py, vx, vy; hits and misses; the last box.
+
+    `evidence` is the sum of the scores of all boxes so far.
+    """
 
     id: I64
     born: F64
@@ -40,6 +43,7 @@ class Newborns:
     z: F64
     score: F64
     kind: I64
+    evidence: F64
 
     def __len__(self) -> int:
         return len(self.id)
@@ -54,6 +58,7 @@ class Newborns:
             ids, np.full(n, stamp), x, np.tile(np.diag(variances), (n, 1, 1)), np.ones(n, np.int64),
             np.zeros(n, np.int64), boxes.size.copy(), boxes.yaw.copy(), yaw_is_sure(boxes.size, config),
             boxes.center[:, 2].copy(), boxes.score.astype(float), boxes.kind.astype(np.int64),
+            boxes.score.astype(float),
         )  # fmt: skip
 
     def select(self, rows: Array) -> Newborns:
@@ -93,6 +98,7 @@ class Newborns:
         self.x[rows] += np.einsum("nij,nj->ni", K, boxes.center[:, :2] - self.x[rows, :2])
         self.P[rows] = P - np.einsum("nij,njk,nlk->nil", K, S, K)
         self.hits[rows] += 1
+        self.evidence[rows] += boxes.score
         sure = yaw_is_sure(boxes.size, config)
         take = sure | ~self.sure[rows]
         self.yaw[rows] = np.where(take, boxes.yaw, self.yaw[rows])
@@ -100,6 +106,11 @@ class Newborns:
         self.size[rows] = np.maximum(self.size[rows], boxes.size)
         self.z[rows] = boxes.center[:, 2]
         self.score[rows], self.kind[rows] = boxes.score, boxes.kind
+
+    def ripe(self, config: TrackerConfig) -> Bool:
+        """(n,) whether each is to be confirmed: by enough hits, or sooner by high scores."""
+        enough = np.inf if config.confirm_score is None else config.confirm_score
+        return np.asarray((self.hits >= config.confirm_hits) | (self.evidence >= enough))
 
     def polar(self, config: TrackerConfig) -> tuple[F64, F64, F64]:
         """State (n, 5), covariance (n, 5, 5) over (x, y, yaw, speed, yaw rate), box heading (n,).

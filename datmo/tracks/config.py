@@ -67,6 +67,9 @@ class TrackerConfig(BaseModel):
 
     # Births and deaths (13)
     confirm_hits: int = Field(5, ge=2, le=5, description="associations that confirm a track")
+    confirm_score: float | None = Field(
+        None, gt=0, description="sum of scores that confirms a track before `confirm_hits`; None: never"
+    )
     birth_misses: int = Field(1, ge=0, description="misses a new track may have before confirmation")
     birth_speed_std: float = Field(10.0, gt=0, description="prior deviation of a new track's velocity [m/s]")
     claim: float = Field(0.5, gt=0, le=1, description="a box claimed less than this may start a track")

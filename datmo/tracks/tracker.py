@@ -174,11 +174,8 @@ class Tracker:
     def _settle(self, has_sight: bool) -> Tracks:
         """Confirm, recall, bury; what is alive now."""
         config, stamp = self.config, float(self._stamp or 0.0)
-        ripe = self._new.hits >= config.confirm_hits
-        grown, self._new = (
-            as_bank(self._new.select(ripe), stamp, self._estimator.size, config),
-            self._new.select(~ripe),
-        )
+        ripe, size = self._new.ripe(config), self._estimator.size
+        grown, self._new = as_bank(self._new.select(ripe), stamp, size, config), self._new.select(~ripe)
         pool = self._bank.join(self._lost)
         mean, P = self._estimator.combined(pool)
         old, young = recall(pool, mean, P, grown, stamp, config)

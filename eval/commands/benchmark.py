@@ -12,6 +12,7 @@ from eval.commands.benchmark_boxes import boxes
 from eval.commands.benchmark_detection import detection
 from eval.commands.benchmark_ground import ground
 from eval.commands.benchmark_lines import lines
+from eval.commands.benchmark_tracker import tracker
 
 benchmark = typer.Typer(
     no_args_is_help=True,
@@ -33,6 +34,7 @@ benchmark.command("boxes")(boxes)
 benchmark.command("detection")(detection)
 benchmark.command("ground")(ground)
 benchmark.command("lines")(lines)
+benchmark.command("tracker")(tracker)
 
 
 @benchmark.command("cast")

@@ -144,6 +144,14 @@ def test_a_miss_before_confirmation_is_allowed_once():
         assert (first in tracks.boxes.id.tolist()) is alive
 
 
+@pytest.mark.parametrize(("score", "at"), [(9.0, 0), (4.0, 1), (3.0, 2), (0.5, 4)])
+def test_high_scores_confirm_sooner(score, at):
+    one = Boxes([[5, 5, 0]], [[4.5, 1.8, 1.5]], [0.1], score=[score])
+    tracker = Tracker(TrackerConfig(confirm_score=8.0))
+    seen = [int(tracker.step(one, 0.1 * k).status[0]) for k in range(6)]
+    assert next(k for k, s in enumerate(seen) if s >= 5) == at
+
+
 def test_ids_are_never_used_twice():
     tracker, seen = Tracker(), set()
     for _ in range(3):

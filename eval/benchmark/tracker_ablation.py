@@ -1,0 +1,50 @@
+"""What each idea of the tracker brings on real sequences: each switched off, in turn."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from datmo.tracks import TrackerConfig
+from eval.benchmark.kitti_tracks import Drive
+from eval.benchmark.tracker_real import RealScores, score_real
+from eval.benchmark.tracker_rivals import Ours
+
+ABLATIONS: Mapping[str, Mapping[str, Any]] = {
+    "cv alone": {"models": ("cv",)},
+    "ctrv alone": {"models": ("ctrv",)},
+    "rm alone": {"models": ("rm",)},
+    "cv and ctrv": {"models": ("cv", "ctrv")},
+    "modes move while unseen": {"freeze_unseen": False},
+    "textbook mixing": {"mix_yaw_rate": True, "freeze_unseen": False},
+    "no yaw measured": {"use_yaw": False},
+    "size and heading weigh nothing": {"weigh_shape": False},
+    "clutter by volume": {"clutter": "nonparametric"},
+    "no second stage": {"recall": False},
+    "crowds cut to two boxes": {"max_frontier": 2},
+    "five hits confirm": {"confirm_hits": 5, "confirm_score": None},
+    "any score starts a track": {"birth_score": 0.0},
+    "one miss is death": {"max_coast": 0.1},
+    "life of half a second": {"max_coast": 0.5},
+    "life of a second": {"max_coast": 1.0},
+}
+"""Fields of `TrackerConfig` that switch one idea off."""
+WHOLE = "all"
+
+
+def ablate(
+    base: TrackerConfig,
+    played: Sequence[Drive],
+    changes: Mapping[str, Mapping[str, Any]] = ABLATIONS,
+    coasting: bool = False,
+) -> dict[str, RealScores]:
+    """Figures over all sequences of the tracker as it is, under "all", and then with each change.
+
+    Raises:
+        ConfigError: TrackEval is not installed, or no sequence is given.
+    """
+    configs = {WHOLE: base}
+    for name, fields in changes.items():
+        configs[name] = TrackerConfig(**(base.model_dump() | dict(fields)))
+    scores = score_real({name: Ours(config, coasting) for name, config in configs.items()}, played)
+    return {name: each["all"] for name, each in scores.items()}
