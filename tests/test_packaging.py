@@ -28,6 +28,7 @@ def test_the_wheel_ships_packages_scenarios_and_types(wheel: Path) -> None:
     assert not any(n.startswith(("tests/", "docs/")) for n in names)
 
 
+@pytest.mark.long
 def test_gym_makes_both_from_a_plain_install(wheel: Path, tmp_path: Path) -> None:
     venv.create(tmp_path / "env", with_pip=False)
     site = next((tmp_path / "env").glob("lib/python*/site-packages"))

@@ -182,6 +182,7 @@ def test_an_expectation_not_met_is_status_1(tiny_file, tmp_path, capsys) -> None
     assert call([*met, "--out", str(tmp_path / "b")]) == 0
 
 
+@pytest.mark.long
 def test_test_reports_each_scenario(tiny, tmp_path, capsys) -> None:
     folder = tmp_path / "scenarios"
     folder.mkdir()
@@ -198,6 +199,7 @@ def test_test_reports_each_scenario(tiny, tmp_path, capsys) -> None:
     assert call(["test", str(folder / "good.scenario.yaml"), "--frames", "2"]) == 0
 
 
+@pytest.mark.long
 def test_view_writes_a_film(tiny_file, tmp_path) -> None:
     from PIL import Image
 

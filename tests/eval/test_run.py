@@ -80,6 +80,7 @@ def test_frames_are_counted_from_reset(stage_testbed) -> None:
             play(scenario(), make=stage_testbed, **bad)
 
 
+@pytest.mark.long
 def test_a_long_run_keeps_few_pictures(stage) -> None:
     frame, truth = stage(0, n=50)
     recording = Recording(scenario(duration=20.0), 0, 201)
@@ -88,6 +89,7 @@ def test_a_long_run_keeps_few_pictures(stage) -> None:
     assert PICTURES / 2 < len(recording.pictures) <= PICTURES + 1
 
 
+@pytest.mark.long
 def test_out_is_not_overwritten(recording, tmp_path, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
     first = choose_folder(None, recording.scenario, 3, False)

@@ -80,6 +80,7 @@ def test_a_wrong_value_is_said_before_anything_is_played() -> None:
         s.plan("empty-road", {"terrain.roughness": ["A", "Z"]})
 
 
+@pytest.mark.long
 def test_workers_do_not_change_the_scores(tiny: Scenario, tmp_path) -> None:
     path = tmp_path / "tiny.yaml"
     path.write_text(dump(tiny))

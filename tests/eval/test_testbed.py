@@ -18,6 +18,7 @@ def made(tiny: Scenario, **options: object) -> gym.Env:
     return gym.make("eval:datmo/Testbed-v0", scenario=tiny, render_mode="rgb_array", **options)
 
 
+@pytest.mark.long
 @pytest.mark.filterwarnings("ignore:.*is different from the unwrapped version:UserWarning")
 def test_checker_passes_on_the_wrapper_that_it_is(tiny: Scenario) -> None:
     env = made(tiny)
@@ -88,6 +89,7 @@ def test_copies_restore_the_arguments(tiny: Scenario) -> None:
     np.testing.assert_array_equal(env.reset(seed=2)[0]["range"], twin.reset(seed=2)[0]["range"])
 
 
+@pytest.mark.long
 def test_a_video_is_recorded(tiny: Scenario, tmp_path) -> None:
     pytest.importorskip("moviepy")
     env = gym.wrappers.RecordVideo(made(tiny), str(tmp_path / "videos"), episode_trigger=lambda _: True)

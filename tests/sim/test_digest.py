@@ -52,6 +52,7 @@ def test_one_digest_in_one_process_after_another_episode(tiny: Scenario) -> None
     assert play(tiny, 3) == first
 
 
+@pytest.mark.long
 def test_one_digest_in_both_vector_environments(tiny: Scenario) -> None:
     def make() -> gym.Env:
         return gym.make("sim:datmo/Lidar-v0", scenario=tiny)

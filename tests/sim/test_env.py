@@ -50,6 +50,7 @@ def test_the_range_image_is_the_scan(tiny: Scenario) -> None:
     assert counts.tolist() == np.bincount(scan.ring, minlength=64).tolist()
 
 
+@pytest.mark.long
 def test_one_seed_one_world(tiny: Scenario) -> None:
     def play(seed: int) -> list[bytes]:
         env = LidarEnv(tiny)

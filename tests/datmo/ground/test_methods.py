@@ -13,7 +13,10 @@ from datmo.ground import METHODS, GroundConfig, GroundSegmenter, segment_ground
 from datmo.ground.config import Method
 
 Make = Callable[..., Any]
-every_method = pytest.mark.parametrize("method", METHODS)
+FEW = ("default", "zli")
+every_method = pytest.mark.parametrize(
+    "method", [m if m in FEW else pytest.param(m, marks=pytest.mark.long) for m in METHODS]
+)
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,10 @@ import pytest
 from datmo.ground import METHODS, segment_ground
 
 Make, Judge = Callable[..., Any], Callable[..., tuple[float, float]]
-every_method = pytest.mark.parametrize("method", METHODS)
+FEW = ("default", "zli")
+every_method = pytest.mark.parametrize(
+    "method", [m if m in FEW else pytest.param(m, marks=pytest.mark.long) for m in METHODS]
+)
 
 
 def warped(points: np.ndarray, height: float, wave: float) -> np.ndarray:

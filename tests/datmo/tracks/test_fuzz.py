@@ -57,6 +57,7 @@ def assert_sound(tracks):
     for values in (b.center, b.size, b.yaw, b.velocity, tracks.cov, tracks.mode_prob):
         assert np.isfinite(values).all()
     assert np.linalg.eigvalsh(tracks.cov).min(initial=1) > 0
+    np.testing.assert_allclose(tracks.mode_prob.sum(1), 1, atol=1e-9)
     assert len(set(b.id.tolist())) == len(tracks)
 
 

@@ -14,6 +14,7 @@ from sim.scan.sweep import Lidar
 from sim.scene.terrain import build_terrain
 
 
+@pytest.mark.long
 def test_the_command_leaves_its_figures(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "cast"
     asked = ["benchmark", "cast", "--actors", "0,3", "--cells", "100", "--rounds", "2", "--out", str(out)]

@@ -65,6 +65,7 @@ def test_each_ablation_changes_what_it_names_and_nothing_else(name: str) -> None
     assert differ == set(ABLATIONS[name])
 
 
+@pytest.mark.long
 def test_the_command_leaves_its_files(
     tiny: Scenario, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -203,6 +203,7 @@ def test_an_ablation_tells_what_changes() -> None:
         assert GroundConfig.model_validate({**fields, **overrides}) != GroundConfig()
 
 
+@pytest.mark.long
 def test_the_command_leaves_its_files(
     staged_scenes: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -227,6 +228,7 @@ def test_the_command_leaves_its_files(
     assert call([*asked, "--out", str(out)]) == BAD_INPUT  # results are not overwritten
 
 
+@pytest.mark.long
 def test_the_ablation_of_a_method(staged_scenes: None, capsys: pytest.CaptureFixture[str]) -> None:
     asked = ["benchmark", "ground", "--ablation", "--classes", "A", "--grades", "0", "--rounds", "1"]
     assert call([*asked, "--methods", "z"]) == DONE

@@ -52,6 +52,7 @@ def test_shares_are_of_the_true_and_of_the_found() -> None:
     assert np.isnan(t.sigma_r)
 
 
+@pytest.mark.long
 def test_the_command_leaves_its_figures(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "lines"
     asked = ["benchmark", "lines", "--seeds", "1", "--profiles", "3", "--rounds", "1", "--out", str(out)]

@@ -52,6 +52,7 @@ def test_a_scene_is_the_same_whatever_else_is_asked_for_and_wherever_it_comes_fr
     assert _same(second, anew)
 
 
+@pytest.mark.long
 def test_scans_of_a_scene_are_apart_and_a_broken_file_is_made_anew(small: None) -> None:
     one, two = scenes(["0.1"], [0], scans=2)
     assert (one.name, two.name) == ("0.1-0", "0.1-0#1")

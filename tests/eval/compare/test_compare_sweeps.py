@@ -149,6 +149,7 @@ def test_real_sweeps_are_as_measured_elsewhere(real_data: Path) -> None:
     assert got.intensity == pytest.approx(0.29, abs=0.01)
 
 
+@pytest.mark.long
 def test_the_command_leaves_its_table_and_figure(tmp_path: Path, tiny: Scenario, capsys) -> None:
     points, intensity, ring, _ = road()
     turn = np.arctan2(points[:, 1], points[:, 0]) % (2 * np.pi)

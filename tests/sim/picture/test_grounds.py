@@ -14,8 +14,11 @@ from sim.picture.terrain import terrain_view
 from sim.scan.embree import MISS, Mesh
 from sim.scene.terrain import Terrain
 
+FEW = ("plane", "bank", "potholes", "iso-e")
+GIVEN = [name if name in FEW else pytest.param(name, marks=pytest.mark.long) for name in ground_names()]
 
-@pytest.fixture(scope="module", params=ground_names())
+
+@pytest.fixture(scope="module", params=GIVEN)
 def built(request) -> Terrain:
     return ground(request.param)
 
@@ -54,6 +57,7 @@ def test_each_kind_of_layer_has_a_ground_to_show():
     assert shown == known
 
 
+@pytest.mark.long
 def test_the_cache_holds_the_bytes_of_every_ground(monkeypatch):
     kept = [ground(name) for name in ("hills", "bank", "kerb")]
     again = [ground(name) for name in ("hills", "bank", "kerb")]

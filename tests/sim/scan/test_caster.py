@@ -77,7 +77,7 @@ def everything(
     return Candidates(ray, np.concatenate(origins), np.concatenate(directions), start)
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", [0, *(pytest.param(n, marks=pytest.mark.long) for n in range(1, 4))])
 @pytest.mark.parametrize("name", ["hdl64e-s3-20171102", "hdl64e-s2.1-sztaki"])
 def test_culling_loses_nothing(
     seed: int, name: str, kit: SimpleNamespace, bodies: Bodies, monkeypatch: pytest.MonkeyPatch

@@ -103,6 +103,7 @@ def test_the_first_goes_before_an_earlier_one_that_can_still_stop() -> None:
     assert min(ego.s, other.s) > 4
 
 
+@pytest.mark.long
 @settings(max_examples=25, deadline=None)
 @given(
     st.lists(st.tuples(st.floats(-90, -16), st.floats(0, 9)), min_size=2, max_size=5),

@@ -38,6 +38,7 @@ def rows(made: Traffic, sweeps: int) -> bytes:
     return np.array(found).tobytes()
 
 
+@pytest.mark.long
 def test_one_seed_one_traffic_whatever_ran_before() -> None:
     first = rows(traffic(3), 25)
     with quiet():
@@ -48,6 +49,7 @@ def test_one_seed_one_traffic_whatever_ran_before() -> None:
     assert rows(traffic(4), 25) != first
 
 
+@pytest.mark.long
 def test_the_ego_position_of_highway_env_does_not_depend_on_what_ran_before() -> None:
     highway = {"environment": "highway-v0", "vehicles": 2, "warm_up": 0.0}
     first = rows(traffic(3, traffic=highway, ego={}), 2)

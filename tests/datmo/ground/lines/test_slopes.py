@@ -57,7 +57,9 @@ def test_without_lines_the_slope_is_the_default() -> None:
     assert out.tolist() == [0.05] * 3
 
 
-@every
+@pytest.mark.parametrize(
+    "name", [n if n == "incremental" else pytest.param(n, marks=pytest.mark.long) for n in NAMES]
+)
 def test_the_ground_runs_on_each(name: Any, scene: Any, judge: Any) -> None:
     made = scene("D", grade=0.05, columns=521)
     ground = segment_ground(made.points, config=GroundConfig(lines=name))

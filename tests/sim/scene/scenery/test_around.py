@@ -40,6 +40,7 @@ def test_scenery_leaves_the_luck_of_ground_and_traffic_alone(bare, world):
     assert a.T_world_actor[driven].tobytes() == b.T_world_actor[driven].tobytes()
 
 
+@pytest.mark.long
 def test_listed_things_come_first_and_ways_stay_free(bare, world):
     listed = (spec.Thing(kind="building", at=(20.0, 20.0)),)
     scenery = spec.Scenery(preset="street", parking=(spec.Parking(share=1.0),))

@@ -65,7 +65,10 @@ def laid(name, terrain, seed=SEED):
     return scatter(spec.Scenery(preset=name), ROADS, terrain, AREA, seed)
 
 
-@pytest.mark.parametrize("name", sorted(set(PRESETS) - {"none"}))
+OTHERS = sorted(set(PRESETS) - {"none", "street"})
+
+
+@pytest.mark.parametrize("name", ["street", *(pytest.param(n, marks=pytest.mark.long) for n in OTHERS)])
 @pytest.mark.parametrize("ground", ["field", "kerbed"])
 def test_nothing_stands_on_a_road_or_sidewalk(name, ground, request):
     terrain = request.getfixturevalue(ground)
@@ -77,7 +80,7 @@ def test_nothing_stands_on_a_road_or_sidewalk(name, ground, request):
         assert beyond(ROADS, points).min() > 0
 
 
-@pytest.mark.parametrize("name", ["street", "forest"])
+@pytest.mark.parametrize("name", ["street", pytest.param("forest", marks=pytest.mark.long)])
 def test_no_two_share_their_ground(name, field):
     rooms = [room(thing) for thing in laid(name, field)]
     assert not any(overlap(a, b) for a, b in combinations(rooms, 2))
@@ -120,6 +123,7 @@ def test_crowns_hardly_reach_over_the_road(field):
         assert beyond(ROADS, np.array([thing.at]))[0] >= radius - 0.8 - 1e-3
 
 
+@pytest.mark.long
 @settings(max_examples=12, deadline=None)
 @given(st.floats(-0.06, 0.06), st.floats(-0.06, 0.06), st.floats(3, 14), st.integers(0, 99))
 def test_nothing_stands_on_any_winding_road(bend, twist, width, seed):

@@ -139,6 +139,7 @@ def test_no_reader_meets_half_a_file(folder, monkeypatch):
     assert list(folder.iterdir()) == []
 
 
+@pytest.mark.long
 def test_a_fresh_process_builds_the_same_bytes(folder):
     code = """
 import hashlib, numpy as np

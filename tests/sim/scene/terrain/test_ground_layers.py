@@ -149,6 +149,7 @@ def test_layers_add_up_each_as_if_alone():
     assert np.abs(whole - alone).max() < 1e-5
 
 
+@pytest.mark.long
 @settings(max_examples=4, deadline=None)
 @given(order=st.permutations(range(len(MANY))))
 def test_their_order_is_of_no_account(order):
@@ -172,6 +173,7 @@ def test_what_is_strewn_lies_still_when_the_area_grows(layer):
     assert not np.array_equal(other.height, small.height)
 
 
+@pytest.mark.long
 def test_one_layer_more_leaves_the_luck_of_the_others():
     rough = {"roughness": "E", "area": (-15, -15, 15, 15)}
     hills = {"kind": "hills", "density": 30}
