@@ -7,10 +7,11 @@ from typing import Protocol
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from datmo.arrays import F64, I64
+from datmo.arrays import I64
 from datmo.geometry import wrap_angle
 from datmo.messages import Boxes, Status
 from datmo.tracks import Tracker, TrackerConfig
+from datmo.tracks.ukf import half_turn
 
 THESIS = TrackerConfig(
     use_yaw=False,
@@ -135,7 +136,7 @@ class PlainKalman:
         self._P[track] -= K[:, :, None] * self._P[track, :1]
         size, yaw = self._boxes.size.copy(), self._boxes.yaw.copy()
         size[track] += self.FOLLOW * (boxes.size - size[track])
-        yaw[track] += self.FOLLOW * _half_turn(boxes.yaw - yaw[track])
+        yaw[track] += self.FOLLOW * half_turn(boxes.yaw - yaw[track])
         self._boxes = Boxes(self._p, size, wrap_angle(yaw), id=self._boxes.id)
 
     def _keep_and_start(self, born: Boxes) -> None:
@@ -162,8 +163,3 @@ def rivals() -> dict[str, Rival]:
         "Kalman": PlainKalman(),
         "Kalman, with what coasts": PlainKalman(coasting=True),
     }
-
-
-def _half_turn(angle: F64) -> F64:
-    """Angles [rad] brought into [-pi/2, pi/2) by half turns: a box has no front."""
-    return np.asarray((angle + np.pi / 2) % np.pi - np.pi / 2)

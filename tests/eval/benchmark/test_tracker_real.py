@@ -73,7 +73,11 @@ def test_a_distractor_may_be_tracked_or_not(drive: Drive) -> None:
         assert (got.hota, got.false, got.missed) == (pytest.approx(1), 0, 0)
 
 
-@pytest.mark.parametrize("rival", [Ours(), Ours(THESIS), Ours(coasting=True), PlainKalman()], ids=str)
+@pytest.mark.parametrize(
+    "rival",
+    [Ours(), Ours(THESIS), Ours(coasting=True), PlainKalman()],
+    ids=["ours", "thesis", "coasting", "kalman"],
+)
 def test_rivals_keep_one_identity(drive: Drive, rival: Rival) -> None:
     for _ in range(2):  # reset begins anew
         got = score_real({"x": rival}, [drive])["x"]["all"]
