@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from datmo.arrays import F64
+from datmo.arrays import F64, I64
 from datmo.errors import ConfigError
 from datmo.messages import Boxes, Kind
 from eval.benchmark.kitti_tracks import Drive
@@ -104,7 +104,7 @@ def as_trackeval(truth: Sequence[Boxes], reported: Sequence[Boxes]) -> dict[str,
     }
 
 
-def _frame(truth: Boxes, reported: Boxes) -> tuple[F64, F64, F64]:
+def _frame(truth: Boxes, reported: Boxes) -> tuple[I64, I64, F64]:
     """Ids of the cars (n,) and of the tracks to be judged (m,), and their overlap (n, m)."""
     overlap = iou_3d(truth, reported)
     car = truth.kind == Kind.CAR
