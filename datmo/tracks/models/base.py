@@ -62,13 +62,18 @@ def along_jerked(x: F64, dt: float, density: float) -> F64:
             [dt**3 / 6, dt**2 / 2, dt],
         ]
     )
-    rows = [0, V, ACCEL]
-    Q[..., np.ix_(rows, rows)[0], np.ix_(rows, rows)[1]] = density * chain
+    rows = np.array([0, V, ACCEL])
+    Q[..., rows[:, None], rows] = density * chain
     return np.asarray(Q + FLOOR * np.eye(x.shape[-1]))
 
 
-def turning(Q: F64, x: F64, dt: float, density: F64) -> F64:
-    """Q with white yaw acceleration of `density` (...) [rad²/s³], which turns heading and place."""
+def turning(Q: F64, x: F64, dt: float, density: F64 | float) -> F64:
+    """Q [world] with white yaw acceleration of `density` (...) [rad²/s³], which turns heading and place.
+
+    Args:
+        Q: (..., n, n) of the motion along the heading, axes (along, across, psi, v, ...); changed in place.
+        x: (..., n). dt: [s].
+    """
     speed = x[..., V]
     Q[..., 1, 1] += speed**2 * density * dt**5 / 20
     Q[..., 1, PSI] = Q[..., PSI, 1] = speed * density * dt**4 / 8
@@ -76,7 +81,7 @@ def turning(Q: F64, x: F64, dt: float, density: F64) -> F64:
     Q[..., PSI, PSI] += density * dt**3 / 3
     Q[..., PSI, OMEGA] = Q[..., OMEGA, PSI] = density * dt**2 / 2
     Q[..., OMEGA, OMEGA] += density * dt
-    return Q
+    return to_world(Q, x[..., PSI])
 
 
 def to_world(Q: F64, psi: F64) -> F64:

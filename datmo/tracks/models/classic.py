@@ -76,8 +76,7 @@ class ConstantTurn(MotionModel):
 
     def noise(self, x: F64, dt: float) -> F64:
         """See `MotionModel`: acceleration along, yaw acceleration across."""
-        Q = along(x, dt, self.accel_density)
-        return to_world(turning(Q, x, dt, np.asarray(self.yaw_accel_density)), x[..., PSI])
+        return turning(along(x, dt, self.accel_density), x, dt, self.yaw_accel_density)
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,6 @@ from datmo.tracks.models.base import (
     V,
     along,
     along_jerked,
-    to_world,
     turning,
     unaccelerated,
 )
@@ -46,8 +45,7 @@ class ConstantTurnAcceleration(MotionModel):
 
     def noise(self, x: F64, dt: float) -> F64:
         """See `MotionModel`: jerk along, yaw acceleration across."""
-        Q = along_jerked(x, dt, self.jerk_density)
-        return to_world(turning(Q, x, dt, np.asarray(self.yaw_accel_density)), x[..., PSI])
+        return turning(along_jerked(x, dt, self.jerk_density), x, dt, self.yaw_accel_density)
 
 
 @dataclass(frozen=True)
@@ -68,8 +66,7 @@ class ConstantSteering(MotionModel):
 
     def noise(self, x: F64, dt: float) -> F64:
         """See `MotionModel`: acceleration along, the curvature's random walk across."""
-        Q = along(x, dt, self.accel_density)
-        return to_world(turning(Q, x, dt, x[..., V] ** 2 * self.curvature_density), x[..., PSI])
+        return turning(along(x, dt, self.accel_density), x, dt, x[..., V] ** 2 * self.curvature_density)
 
 
 @dataclass(frozen=True)
@@ -91,8 +88,7 @@ class ConstantCurvature(MotionModel):
 
     def noise(self, x: F64, dt: float) -> F64:
         """See `MotionModel`: jerk along, the curvature's random walk across."""
-        Q = along_jerked(x, dt, self.jerk_density)
-        return to_world(turning(Q, x, dt, x[..., V] ** 2 * self.curvature_density), x[..., PSI])
+        return turning(along_jerked(x, dt, self.jerk_density), x, dt, x[..., V] ** 2 * self.curvature_density)
 
 
 def curvature(x: F64) -> F64:

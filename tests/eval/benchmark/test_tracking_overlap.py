@@ -5,7 +5,7 @@ import pytest
 
 from datmo.geometry import corners_bev
 from datmo.messages import Boxes
-from eval.benchmark.tracking_overlap import iou_3d, shared_area
+from eval.benchmark.tracking_overlap import iou_3d
 
 
 def some(rng: np.random.Generator, n: int) -> Boxes:
@@ -49,4 +49,3 @@ def test_none_at_all() -> None:
     one = some(np.random.default_rng(0), 3)
     assert iou_3d(one, Boxes.empty()).shape == (3, 0)
     assert iou_3d(Boxes.empty(), one).shape == (0, 3)
-    assert shared_area(np.zeros((0, 4, 2)), np.zeros((0, 4, 2))).shape == (0,)
