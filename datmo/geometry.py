@@ -9,6 +9,8 @@ import numpy as np
 
 from datmo.arrays import F64, Array
 
+RIGID = 1e-3  # largest error of a rotation's products
+
 
 def wrap_angle(angle: Array | float) -> F64:
     """The same angle in [-pi, pi) [rad]."""
@@ -32,6 +34,13 @@ def inverse(T_a_b: F64) -> F64:
     T_b_a[..., :3, 3] = -np.matmul(R, T_a_b[..., :3, 3, None])[..., 0]
     T_b_a[..., 3, 3] = 1
     return T_b_a
+
+
+def is_rigid(T_a_b: F64) -> bool:
+    """Whether a matrix (4, 4) is a rotation and a translation, up to the rounding of printed poses."""
+    R = T_a_b[:3, :3]
+    error = np.abs(np.einsum("ij,kj->ik", R, R) - np.eye(3)).max()
+    return bool(error < RIGID and np.linalg.det(R) > 0 and np.abs(T_a_b[3] - [0, 0, 0, 1]).max() < RIGID)
 
 
 def rotation_z(yaw: Array | float) -> F64:

@@ -11,6 +11,8 @@ from datmo.arrays import F32, F64, I32, I64, U8, Array, Bool
 from datmo.errors import MessageError
 from datmo.messages.base import Message, Status
 
+EDGE = 0.01  # [m] least seen side: points on one line are as wide as their noise
+
 
 @dataclass(frozen=True, eq=False)
 class Clusters(Message):
@@ -110,14 +112,14 @@ class Detections(Boxes):
         self._set("cluster", (k,), np.int64, -1)
 
     def visible(self) -> Boxes:
-        """The seen parts alone, length >= width, yaw in [-pi/2, pi/2)."""
+        """The seen parts alone, length >= width > 0, yaw in [-pi/2, pi/2)."""
         along, across = self.seen[:, 1] - self.seen[:, 0], self.seen[:, 3] - self.seen[:, 2]
         x, y = (self.seen[:, 0] + self.seen[:, 1]) / 2, (self.seen[:, 2] + self.seen[:, 3]) / 2
         c, s = np.cos(self.yaw), np.sin(self.yaw)
         center, size = self.center.copy(), self.size.copy()
         center[:, 0] += c * x - s * y
         center[:, 1] += s * x + c * y
-        size[:, 0], size[:, 1] = np.maximum(along, across), np.minimum(along, across)
+        size[:, 0], size[:, 1] = np.maximum(along, across), np.maximum(np.minimum(along, across), EDGE)
         yaw = np.where(along >= across, self.yaw, self.yaw + np.pi / 2)
         yaw = (yaw + np.pi / 2) % np.pi - np.pi / 2
         return Boxes(center, size, yaw, self.velocity, self.score, self.id, self.kind)

@@ -8,6 +8,7 @@ import numpy as np
 
 from datmo.arrays import F32, F64, U8
 from datmo.errors import MessageError
+from datmo.geometry import is_rigid
 from datmo.messages.base import Message
 
 
@@ -52,6 +53,11 @@ class Scan(Message):
             raise MessageError(
                 f"Scan has stamp {self.stamp} s and T_world_sensor {self.T_world_sensor.tolist()}; both must "
                 "be finite; leave out scans without a time or a pose"
+            )
+        if not is_rigid(self.T_world_sensor):
+            raise MessageError(
+                f"Scan has T_world_sensor {self.T_world_sensor.tolist()}; it must be a rotation and a "
+                "translation, with 0 0 0 1 below; give the sensor's pose in the world"
             )
 
     def __len__(self) -> int:

@@ -50,6 +50,8 @@ def test_times_are_not_compared() -> None:
         lambda: Scan(points=[["a", "b", "c"]]),
         lambda: Scan(points=np.zeros((1, 3)), stamp=np.nan, ring=np.zeros(1)),
         lambda: Scan(points=np.zeros((1, 3)), T_world_sensor=np.full((4, 4), np.nan)),
+        lambda: Scan(points=np.zeros((1, 3)), T_world_sensor=np.zeros((4, 4))),
+        lambda: Scan(points=np.zeros((1, 3)), T_world_sensor=np.diag([1.0, 1.0, -1.0, 1.0])),
         lambda: Boxes(center=np.zeros((1, 3)), size=np.zeros((2, 3)), yaw=np.zeros(1)),
         lambda: Clusters(np.array([0, 1, 2]), count=2),
         lambda: Tracks(boxes(), cov=np.zeros((2, 4, 4))),

@@ -126,3 +126,14 @@ def test_ground_below_is_the_ground_in_the_world() -> None:
 def test_an_unknown_ground_method_offers_the_nearest() -> None:
     with pytest.raises(ConfigError, match="'z-se'"):
         DatmoConfig().with_ground("zse")
+
+
+def test_points_on_one_line_are_a_thin_box_that_the_tracker_takes() -> None:
+    rng = np.random.default_rng(0)
+    floor = np.column_stack([rng.uniform(-30, 30, (30000, 2)), np.full(30000, -1.7)])
+    line = np.column_stack([np.full(200, 8.0), np.linspace(-2, 2, 200), np.full(200, -0.5)])
+    frame = Datmo().step(Scan(points=np.concatenate([floor, line])))
+    assert len(frame.boxes) == 1
+    assert (frame.boxes.visible().size > 0).all()
+    assert "boxes dropped" not in frame.notes
+    assert len(frame.tracks.boxes) == 1
