@@ -23,6 +23,7 @@ class Sight(Message):
         near: (e, a) nearest range in the cell [m], 0 where no ray returned.
         far: (e, a) farthest range in the cell [m], 0 where no ray returned.
         T_world_sensor: (4, 4).
+        dt: (a,) when the rays of each column were fired, before the scan's stamp [s, <= 0]; 0 where left out.
 
     Rows run up from `LOWEST` by `ELEVATION_STEP`; columns run counter-clockwise from azimuth
     -pi by `AZIMUTH_STEP`.
@@ -31,11 +32,13 @@ class Sight(Message):
     near: F32
     far: F32
     T_world_sensor: F64
+    dt: F32 = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
         self._set("near", (None, None), np.float32)
         self._set("far", self.near.shape, np.float32)
         self._set("T_world_sensor", (4, 4), np.float64)
+        self._set("dt", (self.near.shape[1],), np.float32, 0)
 
     def look(self, places: F64) -> tuple[F64, F64, F64]:
         """What the scan saw in the direction of each place.
@@ -55,6 +58,14 @@ class Sight(Message):
         near, far = self.near[row, column].astype(float), self.far[row, column].astype(float)
         seen = fired & (far > 0)
         return distance, np.where(seen, near, np.nan), np.where(seen, far, np.nan)
+
+    def when(self, places: F64) -> F64:
+        """When the rays towards each place (n, 2 or 3) [m, world] were fired: (n,) [s, <= 0]."""
+        local = np.zeros((len(places), 3))
+        local[:, : places.shape[1]] = places
+        local[:, 2] = self.T_world_sensor[2, 3]
+        column = cells(transform(inverse(self.T_world_sensor), local), self.near.shape)[1]
+        return self.dt[column].astype(float)
 
 
 def cells(points: F64, shape: tuple[int, ...]) -> tuple[I64, I64]:

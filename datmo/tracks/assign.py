@@ -13,13 +13,21 @@ from datmo.tracks.config import TrackerConfig
 from datmo.tracks.existence import given_existence
 from datmo.tracks.gate import Pairs, densities, gate, near, size_ratios, sure_yaw, yaw_ratios
 from datmo.tracks.pda import Links
+from datmo.tracks.trust import noise_factor
 from datmo.tracks.ukf import inverse_2x2
 
 LEAST_WEIGHT = 1e-200
 
 
 def assign(
-    bank: Bank, mean: F64, P: F64, boxes: Boxes, visible: F64, sight: Sight | None, config: TrackerConfig
+    bank: Bank,
+    mean: F64,
+    P: F64,
+    boxes: Boxes,
+    trust: F64,
+    visible: F64,
+    sight: Sight | None,
+    config: TrackerConfig,
 ) -> tuple[Pairs, Links, F64]:
     """Gated pairs, their probabilities, and each pair's mode likelihood over their mean (p, m).
 
@@ -27,7 +35,8 @@ def assign(
     tracks that exist; `bank.existence` is brought up to date.
     """
     reach = bank.size[:, 0] / 2 if sight is not None else np.zeros(len(bank))
-    pairs = read(bank, mean, boxes, *near(mean, P, boxes.center, reach, config), sight, config)
+    factor = noise_factor(trust, config)
+    pairs = read(bank, mean, boxes, factor, *near(mean, P, boxes.center, reach, config), sight, config)
     pairs = gate(pairs, mean, P, config)
     pairs.yaw = sure_yaw(pairs, mean, P, config)
     by_mode, shape = densities(pairs, bank.x, bank.P), np.ones(len(pairs))

@@ -16,6 +16,7 @@ from datmo.messages import Boxes
 from datmo.tracks.box import yaw_is_sure
 from datmo.tracks.config import TrackerConfig
 from datmo.tracks.gate import determinant
+from datmo.tracks.trust import evidence, noise_factor
 from datmo.tracks.ukf import half_turn, inverse_2x2
 
 H = np.eye(2, 4)
@@ -28,7 +29,8 @@ TELLING_SPEED = 1.5  # [m/s] from which motion tells the heading
 class Newborns:
     """Tracks of status 1-4, n rows: x (n, 4) px, py, vx, vy; hits and misses; the last box.
 
-    `evidence` is the sum of the scores of all boxes so far.
+    `evidence` is -log of the probability that none of its boxes so far is real, `mass` the sum of their
+    weights, one over their noise squared.
     """
 
     id: I64
@@ -44,21 +46,23 @@ class Newborns:
     score: F64
     kind: I64
     evidence: F64
+    mass: F64
 
     def __len__(self) -> int:
         return len(self.id)
 
     @classmethod
-    def start(cls, ids: I64, stamp: float, boxes: Boxes, config: TrackerConfig) -> Newborns:
-        """One track for each box, at rest with a wide prior."""
-        n = len(boxes)
-        variances = [config.position_std**2] * 2 + [config.birth_speed_std**2] * 2
-        x = np.column_stack([boxes.center[:, :2], np.zeros((n, 2))])
+    def start(cls, ids: I64, stamp: float, boxes: Boxes, trust: F64, config: TrackerConfig) -> Newborns:
+        """One track for each box, at rest with a wide prior; trust: (n,), see `datmo.tracks.trust`."""
+        n, factor = len(boxes), noise_factor(trust, config)
+        x, P = np.column_stack([boxes.center[:, :2], np.zeros((n, 2))]), np.zeros((n, 4, 4))
+        P[:, [0, 1], [0, 1]] = ((config.position_std * factor) ** 2)[:, None]
+        P[:, [2, 3], [2, 3]] = config.birth_speed_std**2
         return cls(
-            ids, np.full(n, stamp), x, np.tile(np.diag(variances), (n, 1, 1)), np.ones(n, np.int64),
-            np.zeros(n, np.int64), boxes.size.copy(), boxes.yaw.copy(), yaw_is_sure(boxes.size, config),
+            ids, np.full(n, stamp), x, P, np.ones(n, np.int64), np.zeros(n, np.int64),
+            boxes.size.copy(), boxes.yaw.copy(), yaw_is_sure(boxes.size, config),
             boxes.center[:, 2].copy(), boxes.score.astype(float), boxes.kind.astype(np.int64),
-            boxes.score.astype(float),
+            evidence(trust), factor**-2,
         )  # fmt: skip
 
     def select(self, rows: Array) -> Newborns:
@@ -78,38 +82,43 @@ class Newborns:
         self.x = np.einsum("ij,nj->ni", F, self.x)
         self.P = np.einsum("ij,njk,lk->nil", F, self.P, F) + Q
 
-    def match(self, boxes: Boxes, config: TrackerConfig) -> tuple[I64, I64]:
+    def match(self, boxes: Boxes, trust: F64, config: TrackerConfig) -> tuple[I64, I64]:
         """Rows (newborn, box) of the cheapest assignment within the gate."""
-        S = self.P[:, :2, :2] + config.position_std**2 * np.eye(2)
+        R = (config.position_std * noise_factor(trust, config)) ** 2
+        S = self.P[:, None, :2, :2] + R[None, :, None, None] * np.eye(2)
         nu = boxes.center[None, :, :2] - self.x[:, None, :2]
-        d = np.einsum("nbi,nij,nbj->nb", nu, inverse_2x2(S), nu)
-        cost = d + np.log(determinant(S))[:, None]
+        d = np.einsum("nbi,nbij,nbj->nb", nu, inverse_2x2(S), nu)
+        cost = d + np.log(determinant(S))
         fits = (d <= config.gate_chi2) & _alike(self.size, boxes.size)
         cost = np.where(fits, cost, 1e6)
         rows, columns = linear_sum_assignment(cost)
         kept = fits[rows, columns]
         return rows[kept], columns[kept]
 
-    def correct(self, rows: I64, boxes: Boxes, config: TrackerConfig) -> None:
-        """Take `boxes`, one for each of `rows`."""
+    def correct(self, rows: I64, boxes: Boxes, trust: F64, whole: bool, config: TrackerConfig) -> None:
+        """Take `boxes`, one for each of `rows`; sizes are averaged where boxes are `whole`, else they grow."""
+        factor = noise_factor(trust, config)
         P = self.P[rows]
-        S = P[:, :2, :2] + config.position_std**2 * np.eye(2)
+        S = P[:, :2, :2] + ((config.position_std * factor) ** 2)[:, None, None] * np.eye(2)
         K = np.einsum("nij,njk->nik", P[:, :, :2], inverse_2x2(S))
         self.x[rows] += np.einsum("nij,nj->ni", K, boxes.center[:, :2] - self.x[rows, :2])
         self.P[rows] = P - np.einsum("nij,njk,nlk->nil", K, S, K)
         self.hits[rows] += 1
-        self.evidence[rows] += boxes.score
+        self.evidence[rows] += evidence(trust)
+        self.mass[rows] += factor**-2
         sure = yaw_is_sure(boxes.size, config)
         take = sure | ~self.sure[rows]
         self.yaw[rows] = np.where(take, boxes.yaw, self.yaw[rows])
         self.sure[rows] |= sure
-        self.size[rows] = np.maximum(self.size[rows], boxes.size)
+        size, share = self.size[rows], (factor**-2 / self.mass[rows])[:, None]
+        mean, largest = size + share * (boxes.size - size), np.maximum(size, boxes.size)
+        self.size[rows] = mean if whole else largest
         self.z[rows] = boxes.center[:, 2]
         self.score[rows], self.kind[rows] = boxes.score, boxes.kind
 
     def ripe(self, config: TrackerConfig) -> Bool:
-        """(n,) whether each is to be confirmed: by enough hits, or sooner by high scores."""
-        enough = np.inf if config.confirm_score is None else config.confirm_score
+        """(n,) whether each is to be confirmed: by enough hits, or sooner by boxes that are surely real."""
+        enough = -np.log(max(1 - config.confirm_trust, 1e-300))
         return np.asarray((self.hits >= config.confirm_hits) | (self.evidence >= enough))
 
     def polar(self, config: TrackerConfig) -> tuple[F64, F64, F64]:

@@ -12,8 +12,10 @@ from datmo.tracks.gate import Pairs
 from datmo.tracks.ukf import half_turn
 from datmo.tracks.visibility import judge
 
-BEYOND = 0.35  # [m] past an end, where rays tell whether it is real
-END_SLACK = 0.15  # [m] the end's own face lies `BEYOND` behind that place
+CORNERS = np.array([[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]])  # of a box, by side
+BESIDE, BEYOND = np.deg2rad(0.75), 0.2  # past a corner, at the least [rad], [m], rays tell whether it is real
+HEIGHTS = np.array([-0.15, 0.0, 0.15, 0.3])  # where, in heights from the middle; not all rows have rays
+END_SLACK = 0.3  # [m] so much farther than the corner they must go
 LEAST = 0.1  # [m] a missing extent below this is noise
 LEAP = 1.5  # a box this many times the retained one is taken for a merger first
 MERGER_GAIN = 0.05
@@ -28,9 +30,20 @@ def yaw_is_sure(size: F64, config: TrackerConfig) -> Bool:
 
 
 def read(
-    bank: Bank, mean: F64, boxes: Boxes, track: I64, box: I64, sight: Sight | None, config: TrackerConfig
+    bank: Bank,
+    mean: F64,
+    boxes: Boxes,
+    factor: F64,
+    track: I64,
+    box: I64,
+    sight: Sight | None,
+    config: TrackerConfig,
 ) -> Pairs:
-    """Each candidate pair's measurement as the track reads it: its own axes, its whole extent."""
+    """Each candidate pair's measurement as the track reads it: its own axes, its whole extent.
+
+    Args:
+        factor: (k,) how many times the usual noise each box has.
+    """
     turn = half_turn(boxes.yaw[box] - bank.yaw[track])
     crossed = np.abs(turn) > np.pi / 4
     seen = np.where(crossed[:, None], boxes.size[box][:, 1::-1], boxes.size[box][:, :2])
@@ -42,29 +55,56 @@ def read(
     axes = np.stack([np.cos(turned), np.sin(turned), -np.sin(turned), np.cos(turned)], 1).reshape(-1, 2, 2)
     center = boxes.center[box]
     if sight is not None and config.correct_ends and len(track):
-        real = real_ends(sight, center, axes, seen, bank.size[track, 2])
+        then = center.copy()  # where it was when the rays met it
+        then[:, :2] += sight.when(center)[:, None] * velocity(mean)[track]
+        real = real_ends(sight, then, axes, seen, bank.size[track, 2])
         whole = np.asarray(real.all(axis=2))
         shift = whole_center(center[:, :2], axes, seen, missing, real, mean[track, :2], sight)
     missing = np.where(whole, 0.0, missing)
-    std = np.where(whole, config.whole_std, config.position_std)
+    std = np.where(whole, [config.whole_std, config.whole_std * config.across_share], config.position_std)
+    std, yaw_std = std * factor[box, None], config.yaw_std * factor[box]
     R = np.einsum("pa,pai,paj->pij", std**2 + (config.partial_std * missing) ** 2, axes, axes)
     yaw = np.where(yaw_is_sure(boxes.size, config), boxes.yaw, np.nan)[box]
     n = len(track)
     return Pairs(
-        track, box, center[:, :2] + shift, R, seen, yaw, np.full(n, config.yaw_std**2), turned, whole,
+        track, box, center[:, :2] + shift, R, seen, yaw, yaw_std**2, turned, whole,
         np.zeros(n), np.zeros(n),
     )  # fmt: skip
 
 
+def velocity(mean: F64) -> F64:
+    """(t, 2) [m/s] of states (t, n)."""
+    return np.asarray(mean[:, 3, None] * np.column_stack([np.cos(mean[:, 2]), np.sin(mean[:, 2])]))
+
+
 def real_ends(sight: Sight, center: F64, axes: F64, seen: F64, height: F64) -> Bool:
-    """(p, 2, 2) by side and end (back, front): rays pass just beyond the end, so it is real."""
-    ends = np.array([-1.0, 1.0])
-    reach = (seen / 2 + BEYOND)[:, :, None] * ends
-    places = np.zeros((len(center), 2, 2, 2, 3))
-    places[..., :2] = (center[:, None, None, :2] + reach[..., None] * axes[:, :, None])[:, :, :, None]
-    places[..., 2] = (center[:, None, 2] + np.array([0.0, 0.25]) * height[:, None])[:, None, None]
-    _, empty, _ = judge(sight, places.reshape(-1, 3), np.zeros(len(center) * 8), END_SLACK)
-    return np.asarray(empty.reshape(len(center), 2, 2, 2).any(axis=3))
+    """(p, 2, 2) by side and end (back, front): whether what was seen really ends there.
+
+    So it does when rays pass beside the outermost corner of that end, to either hand, and meet
+    nothing until well behind it. A corner that something nearer cuts off tells nothing.
+
+    Args:
+        center: (p, 3) [m, world]. axes: (p, 2, 2) unit vectors along and across. seen: (p, 2) extent [m].
+        height: (p,) [m].
+    """
+    sensor, real = sight.T_world_sensor[:2, 3], np.zeros((len(center), 2, 2), np.bool_)
+    corners = np.einsum("ca,pa,pai->pci", CORNERS, seen / 2, axes) + (center[:, None, :2] - sensor)
+    middle, rows = center[:, :2] - sensor, np.arange(len(center))
+    cross = middle[:, None, 0] * corners[..., 1] - middle[:, None, 1] * corners[..., 0]
+    bearing = np.arctan2(cross, np.einsum("pi,pci->pc", middle, corners))
+    for hand in (-1.0, 1.0):
+        outer = np.argmax(hand * bearing, axis=1)
+        x, y = corners[rows, outer].T
+        beside = hand * np.maximum(BESIDE, BEYOND / np.maximum(np.hypot(x, y), 1.0))
+        c, s = np.cos(beside), np.sin(beside)
+        places = np.zeros((len(center), len(HEIGHTS), 3))
+        places[..., 0], places[..., 1] = (sensor[0] + c * x - s * y)[:, None], (sensor[1] + s * x + c * y)[:, None]
+        places[..., 2] = center[:, 2, None] + HEIGHTS * height[:, None]
+        _, empty, _ = judge(sight, places.reshape(-1, 3), np.zeros(places[..., 0].size), END_SLACK)
+        passed = empty.reshape(-1, len(HEIGHTS)).any(axis=1)
+        for side in range(2):
+            real[rows, side, (CORNERS[outer, side] > 0).astype(int)] |= passed
+    return real
 
 
 def whole_center(
@@ -86,27 +126,35 @@ def whole_center(
     return np.asarray(np.einsum("pa,pai->pi", along, axes))
 
 
-def retain(bank: Bank, boxes: Boxes, pairs: Pairs, mean: F64, dt: float, config: TrackerConfig) -> None:
+def retain(
+    bank: Bank, boxes: Boxes, factor: F64, pairs: Pairs, mean: F64, dt: float, config: TrackerConfig
+) -> None:
     """Take the associated boxes (one pair a track) into the retained ones.
 
     Dimensions grow quickly and shrink slowly; the heading follows sure yaws, and the motion of a
     fast track without one; the height follows with its rate, so that a hidden track climbs on.
     """
-    t, b = pairs.track, pairs.box
+    t, b, doubt = pairs.track, pairs.box, factor[pairs.box]
     seen = np.column_stack([pairs.seen, boxes.size[b, 2]])
     old = bank.size[t]
     whole = np.column_stack([pairs.whole, pairs.whole.all(axis=1)])
     grow = np.where(whole, config.whole_gain, config.grow)
     shrink = np.where(whole, config.whole_gain, config.shrink)
     gain = np.where(seen > old, np.where(seen > LEAP * old + 0.5, MERGER_GAIN, grow), shrink)
-    bank.size[t] = old + gain * (seen - old)
+    bank.size[t] = old + damped(gain, doubt[:, None]) * (seen - old)
     sure = np.isfinite(pairs.yaw)
     moves = np.abs(mean[t, 3]) > 2
     target = np.where(sure, pairs.yaw, mean[t, 2])
     step = np.where(sure | moves, np.where(moves, 0.5, 0.2), 0.0)
-    bank.yaw[t] += step * half_turn(target - bank.yaw[t])
+    bank.yaw[t] += damped(step, doubt) * half_turn(target - bank.yaw[t])
     limit = MAX_GRADE * np.abs(mean[t, 3])
     error = boxes.center[b, 2] - bank.z[t]
-    bank.z[t] += HEIGHT_GAIN * error
-    bank.climb[t] = np.clip(bank.climb[t] + CLIMB_GAIN * error / max(dt, 1e-3), -limit, limit)
+    bank.z[t] += damped(HEIGHT_GAIN, doubt) * error
+    climb = damped(CLIMB_GAIN, doubt) * error / max(dt, 1e-3)
+    bank.climb[t] = np.clip(bank.climb[t] + climb, -limit, limit)
     bank.score[t], bank.kind[t] = boxes.score[b], boxes.kind[b]
+
+
+def damped(gain: F64 | float, factor: F64) -> F64:
+    """A steady filter's gain for a measurement of `factor` times the noise."""
+    return np.asarray(gain / (gain + (1 - gain) * factor**2))

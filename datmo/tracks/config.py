@@ -38,14 +38,27 @@ class TrackerConfig(BaseModel):
     position_std: float = Field(
         0.15, gt=0, description="noise of a box's centre where an end may be unseen [m]"
     )
-    whole_std: float = Field(0.08, gt=0, description="noise where both ends are real, as without a Sight [m]")
+    whole_std: float = Field(
+        0.08, gt=0, description="noise along the box where both ends are real, as without a Sight [m]"
+    )
+    across_share: float = Field(1.0, gt=0, le=1, description="share of that across the box")
     yaw_std: float = Field(0.06, gt=0, description="noise of a sure box yaw [rad]")
     use_yaw: bool = Field(True, description="box yaw is a third measurement, modulo pi")
     yaw_gate: float = Field(3.5, gt=0, description="a yaw further off than this is no measurement [sigma]")
     yaw_length: float = Field(1.5, ge=0, description="least box length whose yaw is sure [m]")
     yaw_ratio: float = Field(1.3, ge=1, description="least length over width whose yaw is sure")
-    min_score: float = Field(0.0, description="boxes with a lower score are left out")
-    birth_score: float = Field(0.0, description="boxes with a lower score start no track")
+    scores: Literal["auto", "logit", "ignored"] = Field(
+        "auto",
+        description="what scores are: logits of being real, nothing of the kind, or logits once one "
+        "outside 0..1 is seen",
+    )
+    logit_half: float = Field(3.0, description="logit of a box that is as often real as not (PointRCNN)")
+    logit_slope: float = Field(0.73, gt=0, description="log-odds of being real per unit of logit (PointRCNN)")
+    doubt_noise: float = Field(
+        2.3, ge=0, description="extra deviations of a box that is hardly real, by sqrt(1 - trust)"
+    )
+    least_trust: float = Field(0.1, ge=0, le=1, description="boxes less likely to be real are left out")
+    birth_trust: float = Field(0.5, ge=0, le=1, description="boxes less likely to be real start no track")
 
     # Association (12)
     association: Literal["jpda", "pda", "gnn", "jipda"] = Field(
@@ -67,8 +80,8 @@ class TrackerConfig(BaseModel):
 
     # Births and deaths (13)
     confirm_hits: int = Field(5, ge=2, le=5, description="associations that confirm a track")
-    confirm_score: float | None = Field(
-        None, gt=0, description="sum of scores that confirms a track before `confirm_hits`; None: never"
+    confirm_trust: float = Field(
+        0.97, gt=0, le=1, description="probability that any box is real that confirms a track sooner"
     )
     birth_misses: int = Field(1, ge=0, description="misses a new track may have before confirmation")
     birth_speed_std: float = Field(10.0, gt=0, description="prior deviation of a new track's velocity [m/s]")
@@ -84,13 +97,15 @@ class TrackerConfig(BaseModel):
     recall: bool = Field(True, description="match new tracks to coasting and lost ones (second stage)")
     recall_chi2: float = Field(16.0, gt=0, description="gate of that match, six quantities")
 
+    hold_back: bool = Field(True, description="who is not found where rays see is likelier behind what hides it")
+
     # Static or dynamic (Alg. 4)
     window: float = Field(1.0, gt=0, description="time over which motion is judged [s]")
     static_speed: float = Field(0.5, gt=0, description="mean speed below which a track may be static [m/s]")
 
     # Box tracker (14)
     grow: float = Field(0.5, gt=0, le=1, description="gain when a box is larger than retained")
-    shrink: float = Field(0.02, ge=0, le=1, description="gain when a box is smaller than retained")
+    shrink: float = Field(0.0, ge=0, le=1, description="gain when a box is smaller than retained")
     whole_gain: float = Field(0.2, ge=0, le=1, description="gain either way where both ends are real")
     correct_ends: bool = Field(True, description="move partial boxes to where the whole one is")
     partial_std: float = Field(0.15, ge=0, description="extra deviation per metre of missing extent")

@@ -11,9 +11,13 @@ from datmo.tracks import existence
 from datmo.tracks.bank import Bank
 from datmo.tracks.config import TrackerConfig
 from datmo.tracks.models import PSI, V
+from datmo.tracks.ukf import half_turn
 
 DRIFTS = int(Status.LAST) - int(Status.DRIFTING) + 1
+TOGETHER = 3  # scans for which two tracks must be near before they are one
 HIDDEN_SHARE = 0.2  # below this share in view a miss is no evidence at all
+COURSE_TIME, COURSE_SPEED, COURSE_OFF = 0.5, 2.0, 0.6  # [s], [m/s]: who goes so fast for so long is told by it
+COURSE_STD = 0.2  # [rad]
 BACKWARD_SPEED, BACKWARD_TIME = 1.0, 1.0  # who reverses faster and longer than this was born turned around
 
 
@@ -51,16 +55,17 @@ def alive(mean: F64, P: F64, share: F64, config: TrackerConfig) -> Bool:
 def duplicates(bank: Bank, mean: F64, config: TrackerConfig) -> Bool:
     """(t,) tracks that repeat an older one; the younger dies.
 
-    They are nearer than `duplicate_distance`; or one lies inside the other's box and their
-    difference has kept still: two cars parked side by side keep still too, but apart.
+    They have been nearer than `duplicate_distance` for some scans: two that pass each other are so
+    near for less. Or one lies inside the other's box and their difference has kept still: two cars
+    parked side by side keep still too, but apart.
     """
     gap = mean[:, None, :2] - mean[None, :, :2]
     distance = np.linalg.norm(gap, axis=2)
     inside = distance < np.minimum(bank.size[:, None, 1], bank.size[None, :, 1]) / 2 + 0.3
     dead = np.zeros(len(bank), np.bool_)
     for i, j in zip(*np.nonzero(np.triu((distance < config.duplicate_distance) | inside, 1)), strict=True):
-        close = distance[i, j] < min(config.duplicate_distance, 0.8 * min(bank.size[i, 0], bank.size[j, 0]))
-        if close or _still(bank, i, j) < config.duplicate_spread:
+        limit = min(config.duplicate_distance, 0.8 * min(bank.size[i, 0], bank.size[j, 0]))
+        if _apart(bank, i, j) < limit or _still(bank, i, j) < config.duplicate_spread:
             dead[j if (bank.born[i], bank.id[i]) <= (bank.born[j], bank.id[j]) else i] = True
     return dead
 
@@ -100,6 +105,39 @@ def turn_around(bank: Bank, mean: F64, dt: float) -> None:
     bank.P[rows, :, :, V] *= -1
     bank.yaw[rows] = wrap_angle(bank.yaw[rows] + np.pi)
     bank.backward[rows] = 0.0
+
+
+def realign(bank: Bank, mean: F64, hit: Bool, stamp: float) -> None:
+    """Point tracks along the way they go, where their state will not have it.
+
+    A track born across its motion follows by the random model alone: it stays on its object, yet
+    knows neither heading nor speed. Its own past does.
+    """
+    recent = bank.past[:, :, 0] >= stamp - COURSE_TIME - 1e-6
+    first = np.argmax(recent, axis=1)
+    start = bank.past[np.arange(len(bank)), first]
+    span = stamp - start[:, 0]
+    known = hit & recent.any(axis=1) & (span >= COURSE_TIME / 2) & (recent.sum(axis=1) >= 4)
+    way = np.where(known[:, None], (mean[:, :2] - start[:, 1:3]) / np.maximum(span, 1e-3)[:, None], 0.0)
+    speed = np.hypot(way[:, 0], way[:, 1])
+    told = mean[:, V, None] * np.column_stack([np.cos(mean[:, PSI]), np.sin(mean[:, PSI])])
+    off = np.hypot(*(told - way).T)
+    rows = np.flatnonzero(known & (speed > COURSE_SPEED) & (off > COURSE_OFF * speed))
+    course = np.arctan2(way[rows, 1], way[rows, 0])
+    bank.x[rows, :, PSI], bank.x[rows, :, V], bank.x[rows, :, V + 1 :] = course[:, None], speed[rows, None], 0.0
+    for k, std in ((PSI, COURSE_STD), (V, COURSE_SPEED / 2)):
+        bank.P[rows, :, k, :] = bank.P[rows, :, :, k] = 0.0
+        bank.P[rows, :, k, k] = std**2
+    bank.mu[rows] = 1 / bank.mu.shape[1]
+    across = rows[np.abs(half_turn(bank.yaw[rows] - course)) > np.pi / 4]
+    bank.size[across, :2] = bank.size[across, 1::-1]
+    bank.yaw[across] = wrap_angle(bank.yaw[across] + np.pi / 2)
+
+
+def _apart(bank: Bank, i: int, j: int) -> float:
+    """Largest distance [m] of two tracks over the last scans; infinite when too short."""
+    gap = np.linalg.norm(bank.past[i, -TOGETHER:, 1:3] - bank.past[j, -TOGETHER:, 1:3], axis=1)
+    return float(gap.max()) if np.isfinite(gap).all() else np.inf
 
 
 def _still(bank: Bank, i: int, j: int) -> float:

@@ -13,7 +13,7 @@ from datmo.tracks import manage
 from datmo.tracks.assign import assign, innovations, likeliest
 from datmo.tracks.bank import Bank
 from datmo.tracks.birth import Newborns
-from datmo.tracks.box import retain
+from datmo.tracks.box import retain, velocity
 from datmo.tracks.config import TrackerConfig
 from datmo.tracks.confirm import as_bank, take_over, unclaimed
 from datmo.tracks.engine_filterpy import FilterpyFilters
@@ -22,7 +22,9 @@ from datmo.tracks.existence import survive
 from datmo.tracks.filters import Filters
 from datmo.tracks.recall import recall
 from datmo.tracks.report import as_tracks, predicted_boxes
+from datmo.tracks.trust import are_logits, noise_factor, trust
 from datmo.tracks.ukf import BatchedFilters
+from datmo.tracks.unseen import hold_back
 from datmo.tracks.visibility import shares
 
 HIT = 0.5  # association probability from which a track counts as seen
@@ -56,8 +58,9 @@ class Tracker:
         """Forget every track; ids go on, so none is used twice."""
         shape = len(self.config.models), self._estimator.size
         self._bank, self._lost = Bank.empty(*shape), Bank.empty(*shape)
-        self._new = Newborns.start(np.zeros(0, np.int64), 0.0, Boxes.empty(), self.config)
+        self._new = Newborns.start(np.zeros(0, np.int64), 0.0, Boxes.empty(), np.zeros(0), self.config)
         self._stamp: float | None = None
+        self._logits = False
         self._dt = 0.0
         self.notes: dict[str, str] = {}
         self.nis: dict[int, tuple[float, int]] = {}
@@ -82,24 +85,30 @@ class Tracker:
         self.notes, self.nis = {}, {}
         stamp = float(stamp)
         dt = self._elapsed(stamp)
-        boxes = self._accept(boxes.visible())
+        boxes, trusted = self._accept(boxes.visible())
         bank, before = self._bank, self._bank.mu
         mean, P = self._predict(dt)
         visible, empty = self._expect(mean, P, sight)
-        pairs, links, ratio = assign(bank, mean, P, boxes, visible, sight, self.config)
+        pairs, links, ratio = assign(bank, mean, P, boxes, trusted, visible, sight, self.config)
         best = likeliest(pairs, links, HIT)
         self.nis = innovations(bank, mean, P, best)
         self._estimator.update(bank, pairs, links, ratio, before)
         hit = links.missed < HIT
         mean, P = self._estimator.combined(bank)
+        if sight is not None and self.config.hold_back:
+            unmoved = links.missed > 1 - 1e-3
+            hold_back(bank, unmoved, mean, P, self._lag(mean, sight), sight)
+            mean, P = self._estimator.combined(bank)
         bank.fresh, bank.seen = hit, np.where(hit, stamp, bank.seen)
-        retain(bank, boxes, best, mean, dt, self.config)
+        retain(bank, boxes, noise_factor(trusted, self.config), best, mean, dt, self.config)
         manage.charge(bank, hit, visible, empty, dt)
         manage.judge_motion(bank, mean, P, hit, stamp, self.config)
+        manage.realign(bank, mean, hit, stamp)
         manage.turn_around(bank, mean, dt)
         bank.remember(stamp, mean)
         self._note_cuts(links.cut)
-        self._births(boxes, unclaimed(boxes, pairs, links, bank, mean, hit, self.config))
+        free = unclaimed(boxes, pairs, links, bank, mean, hit, self.config)
+        self._births(boxes.select(free), trusted[free], sight is None)
         return self._settle(sight is not None)
 
     def predicted(self, stamp: float) -> Boxes:
@@ -126,7 +135,8 @@ class Tracker:
         self._stamp, self._dt = stamp, dt
         return dt
 
-    def _accept(self, boxes: Boxes) -> Boxes:
+    def _accept(self, boxes: Boxes) -> tuple[Boxes, F64]:
+        """The boxes that are sound, and how far each is to be trusted."""
         numbers = np.column_stack([boxes.center, boxes.size, boxes.yaw, boxes.score])
         sound = np.isfinite(numbers).all(axis=1) & (boxes.size > 0).all(axis=1)
         if not sound.all():
@@ -134,7 +144,12 @@ class Tracker:
             self.notes["boxes dropped"] = (
                 f"{bad} with a value that is not finite or a side that is not positive"
             )
-        return boxes.select(sound & (boxes.score >= self.config.min_score))
+        boxes = boxes.select(sound)
+        self._logits = self._logits or are_logits(boxes.score)
+        logits = {"auto": self._logits, "logit": True, "ignored": False}[self.config.scores]
+        trusted = trust(boxes.score, logits, self.config)
+        kept = trusted >= self.config.least_trust
+        return boxes.select(kept), trusted[kept]
 
     def _predict(self, dt: float) -> tuple[F64, F64]:
         self._new.predict(dt, self.config)
@@ -146,8 +161,13 @@ class Tracker:
     def _expect(self, mean: F64, P: F64, sight: Sight | None) -> tuple[F64, F64]:
         if sight is None:
             return np.ones(len(mean)), np.zeros(len(mean))
-        center = np.column_stack([mean[:, :2], self._bank.z])
+        center = np.column_stack([mean[:, :2] + self._lag(mean, sight), self._bank.z])
         return shares(sight, center, self._bank.size, self._bank.yaw, P[:, :2, :2])
+
+    @staticmethod
+    def _lag(mean: F64, sight: Sight) -> F64:
+        """(t, 2) [m] from where tracks are at the stamp to where they were when the rays came by."""
+        return np.asarray(sight.when(mean[:, :2])[:, None] * velocity(mean))
 
     def _note_cuts(self, cut: int) -> None:
         if cut:
@@ -156,20 +176,21 @@ class Tracker:
             self.notes["covariances repaired"] = f"{self._estimator.filters.jitters} in this step"
             self._estimator.filters.jitters = 0
 
-    def _births(self, boxes: Boxes, free: Bool) -> None:
-        rest, new, config = boxes.select(free), self._new, self.config
-        rows, columns = new.match(rest, config)
-        new.correct(rows, rest.select(columns), config)
+    def _births(self, rest: Boxes, trusted: F64, whole: bool) -> None:
+        new, config = self._new, self.config
+        rows, columns = new.match(rest, trusted, config)
+        new.correct(rows, rest.select(columns), trusted[columns], whole, config)
         missed = np.ones(len(new), np.bool_)
         missed[rows] = False
         new.misses += missed
-        fresh = rest.score >= config.birth_score
+        fresh = trusted >= config.birth_trust
         fresh[columns] = False
         born = rest.select(fresh)
         ids = np.arange(self._next_id, self._next_id + len(born))
         self._next_id += len(born)
         kept = new.select(new.misses <= config.birth_misses)
-        self._new = kept.join(Newborns.start(ids, float(self._stamp or 0.0), born, config))
+        stamp = float(self._stamp or 0.0)
+        self._new = kept.join(Newborns.start(ids, stamp, born, trusted[fresh], config))
 
     def _settle(self, has_sight: bool) -> Tracks:
         """Confirm, recall, bury; what is alive now."""

@@ -27,21 +27,38 @@ def shares(sight: Sight, center: F64, size: F64, yaw: F64, cov: F64) -> tuple[F6
     """
     if len(center) == 0:
         return np.zeros(0), np.zeros(0)
-    toward = center[:, :2] - sight.T_world_sensor[:2, 3]
+    step = np.sqrt(2) * np.linalg.cholesky(cov + 1e-6 * np.eye(2)).swapaxes(1, 2)
+    sigma = np.concatenate([np.zeros((len(center), 1, 2)), step, -step], 1)
+    places = np.repeat(center[:, None], 5, axis=1)
+    places[..., :2] += sigma
+    hidden, empty, known = (k.sum(axis=1) for k in looks(sight, places, size, yaw))
+    share = np.where(known > 0, 1 - hidden / np.maximum(known, 1), 1.0)
+    return share, np.where(known > 0, empty / np.maximum(known, 1), 0.0)
+
+
+def looks(sight: Sight, center: F64, size: F64, yaw: F64) -> tuple[F64, F64, F64]:
+    """Of the rays towards a box at each of some places: how many end before it, beyond it, or at all.
+
+    Args:
+        sight: how far the rays saw.
+        center: (t, m, 3) places of t boxes [m, world]. size: (t, 3) [m]. yaw: (t,) [rad].
+
+    Returns:
+        hidden, empty, known, (t, m) each: numbers of places looked for, of `HEIGHTS` times `SIDES`.
+    """
+    t, m = center.shape[:2]
+    toward = center[:, 0, :2] - sight.T_world_sensor[:2, 3]
     bearing = np.arctan2(toward[:, 1], toward[:, 0])
     c, s = np.abs(np.cos(yaw - bearing)), np.abs(np.sin(yaw - bearing))
     depth, across = (size[:, 0] * c + size[:, 1] * s) / 2, size[:, 0] * s + size[:, 1] * c
     side = np.stack([-np.sin(bearing), np.cos(bearing)], 1)
-    step = np.sqrt(2) * np.linalg.cholesky(cov + 1e-6 * np.eye(2)).swapaxes(1, 2)
-    sigma = np.concatenate([np.zeros((len(center), 1, 2)), step, -step], 1)
-    places = np.zeros((len(center), 5, len(SIDES), len(HEIGHTS), 3))
     sideways = (SIDES[None] * across[:, None])[..., None] * side[:, None]
-    places[..., :2] = (center[:, None, None, :2] + sigma[:, :, None] + sideways[:, None])[:, :, :, None]
-    places[..., 2] = (center[:, 2, None] + HEIGHTS[None] * size[:, 2, None])[:, None, None]
+    places = np.zeros((t, m, len(SIDES), len(HEIGHTS), 3))
+    places[..., :2] = (center[:, :, None, :2] + sideways[:, None])[:, :, :, None]
+    places[..., 2] = center[:, :, None, None, 2] + (HEIGHTS[None] * size[:, 2, None])[:, None, None]
     kind = judge(sight, places.reshape(-1, 3), np.repeat(depth, places[0].size // 3))
-    hidden, empty, known = (k.reshape(len(center), -1).sum(1) for k in kind)
-    share = np.where(known > 0, 1 - hidden / np.maximum(known, 1), 1.0)
-    return share, np.where(known > 0, empty / np.maximum(known, 1), 0.0)
+    hidden, empty, known = (k.reshape(t, m, -1).sum(axis=2).astype(float) for k in kind)
+    return hidden, empty, known
 
 
 def judge(sight: Sight, places: F64, depth: F64, slack: float = SLACK) -> tuple[Bool, Bool, Bool]:

@@ -28,9 +28,7 @@ THESIS = TrackerConfig(
 """As near to the printed thesis as this tracker comes: position alone is measured, a miss ends a new
 track, five states of drifting at 10 Hz, textbook mixing, clutter by the gate's volume."""
 POINT_RCNN = TrackerConfig(
-    birth_score=3.0,
     confirm_hits=4,
-    confirm_score=8.0,
     yaw_std=0.2,
     whole_std=0.05,
     gate_chi2=20.0,

@@ -89,6 +89,10 @@ class ConsistencyScores:
         """The named scores."""
         return {"consistency.nees": mean(self._nees), "consistency.nis": mean(self._nis)}
 
+    def samples(self) -> tuple[list[float], list[float]]:
+        """Every NEES of a place, and every NIS, each by its dimension."""
+        return self._nees, self._nis
+
     def detail(self, hidden: list[float]) -> dict[str, Any]:
         """What stands beside: spreads, the full state, and the owners of `hidden` objects apart."""
         return {

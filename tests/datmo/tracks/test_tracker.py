@@ -115,12 +115,35 @@ def test_a_miss_before_confirmation_is_allowed_once():
         assert (first in tracks.boxes.id.tolist()) is alive
 
 
-@pytest.mark.parametrize(("score", "at"), [(9.0, 0), (4.0, 1), (3.0, 2), (0.5, 4)])
-def test_high_scores_confirm_sooner(score, at):
+@pytest.mark.parametrize(("score", "at"), [(9.0, 0), (6.0, 1), (4.0, 3), (3.3, 4)])
+def test_logits_confirm_by_what_they_say(score, at):
     one = Boxes([[5, 5, 0]], [[4.5, 1.8, 1.5]], [0.1], score=[score])
-    tracker = Tracker(TrackerConfig(confirm_score=8.0))
+    tracker = Tracker()
     seen = [int(tracker.step(one, 0.1 * k).status[0]) for k in range(6)]
     assert next(k for k, s in enumerate(seen) if s >= 5) == at
+
+
+def test_unlikely_logits_start_no_track_and_shares_count_by_hits():
+    def born(score, **config):
+        tracker = Tracker(TrackerConfig(**config))
+        return len(tracker.step(Boxes([[5, 5, 0]], [[4.5, 1.8, 1.5]], [0.1], score=[score]), 0.0).boxes)
+
+    assert born(2.0) == 0
+    assert born(2.0, scores="ignored") == 1
+    assert born(0.2) == 1
+    assert born(0.2, scores="logit") == 0
+
+
+def test_boxes_of_little_trust_move_a_track_less():
+    def pull(score):
+        tracker = Tracker(TrackerConfig(scores="logit"))
+        for k in range(8):
+            tracker.step(Boxes([[10.0, 0, 0]], [[4.5, 1.8, 1.5]], [0.0], score=[9.0]), 0.1 * k)
+        moved = tracker.step(Boxes([[10.2, 0, 0]], [[5.0, 1.8, 1.5]], [0.0], score=[score]), 0.8).boxes
+        return moved.center[0, 0] - 10, moved.size[0, 0] - 4.5
+
+    assert 0 < pull(2.0)[0] < 0.8 * pull(9.0)[0]
+    assert 0 < pull(2.0)[1] < 0.8 * pull(9.0)[1]
 
 
 def test_ids_are_never_used_twice():
