@@ -18,6 +18,7 @@ class Bank:
 
     Attributes:
         id: (t,) never used twice. born, seen: (t,) stamp of the first and the last hit [s].
+        steady: (t,) stamp since when hits have followed each other closely [s].
         fresh: (t,) whether the last scan hit it.
         x: (t, m, n), P: (t, m, n, n), mu: (t, m) of each mode.
         missed: (t,) time without a hit where it should have been seen [s].
@@ -32,6 +33,7 @@ class Bank:
     id: I64
     born: F64
     seen: F64
+    steady: F64
     fresh: Bool
     x: F64
     P: F64
@@ -58,7 +60,7 @@ class Bank:
         x, P, mu = np.zeros((0, modes, size)), np.zeros((0, modes, size, size)), np.zeros((0, modes))
         flag, past = np.zeros(0, np.bool_), np.zeros((0, HISTORY, 4))
         return cls(
-            whole, real, real, flag, x, P, mu, real, real, np.zeros((0, 3)),
+            whole, real, real, real, flag, x, P, mu, real, real, np.zeros((0, 3)),
             real, real, real, real, whole, flag, real, past,
         )  # fmt: skip
 

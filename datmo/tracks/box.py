@@ -51,7 +51,7 @@ def read(
     missing = np.maximum(bank.size[track, :2] - seen, 0)
     missing = np.where(missing < LEAST, 0.0, missing)
     shift = np.zeros((len(track), 2))
-    whole = np.full((len(track), 2), sight is None)
+    whole, doubt = np.full((len(track), 2), sight is None), np.full((len(track), 2), config.partial_std)
     axes = np.stack([np.cos(turned), np.sin(turned), -np.sin(turned), np.cos(turned)], 1).reshape(-1, 2, 2)
     center = boxes.center[box]
     if sight is not None and config.correct_ends and len(track):
@@ -59,11 +59,13 @@ def read(
         then[:, :2] += sight.when(center)[:, None] * velocity(mean)[track]
         real = real_ends(sight, then, axes, seen, bank.size[track, 2])
         whole = np.asarray(real.all(axis=2))
+        doubt = np.where(real.any(axis=2), config.one_end_std, config.partial_std)
         shift = whole_center(center[:, :2], axes, seen, missing, real, mean[track, :2], sight)
     missing = np.where(whole, 0.0, missing)
-    std = np.where(whole, [config.whole_std, config.whole_std * config.across_share], config.position_std)
+    certain = config.given_std if sight is None else (config.whole_std, config.whole_std)
+    std = np.where(whole, certain, config.position_std)
     std, yaw_std = std * factor[box, None], config.yaw_std * factor[box]
-    R = np.einsum("pa,pai,paj->pij", std**2 + (config.partial_std * missing) ** 2, axes, axes)
+    R = np.einsum("pa,pai,paj->pij", std**2 + (doubt * missing) ** 2, axes, axes)
     yaw = np.where(yaw_is_sure(boxes.size, config), boxes.yaw, np.nan)[box]
     n = len(track)
     return Pairs(

@@ -38,10 +38,10 @@ class TrackerConfig(BaseModel):
     position_std: float = Field(
         0.15, gt=0, description="noise of a box's centre where an end may be unseen [m]"
     )
-    whole_std: float = Field(
-        0.08, gt=0, description="noise along the box where both ends are real, as without a Sight [m]"
+    whole_std: float = Field(0.08, gt=0, description="noise where rays show both ends to be real [m]")
+    given_std: tuple[float, float] = Field(
+        (0.05, 0.025), description="noise along and across boxes that come without a Sight [m]"
     )
-    across_share: float = Field(1.0, gt=0, le=1, description="share of that across the box")
     yaw_std: float = Field(0.06, gt=0, description="noise of a sure box yaw [rad]")
     use_yaw: bool = Field(True, description="box yaw is a third measurement, modulo pi")
     yaw_gate: float = Field(3.5, gt=0, description="a yaw further off than this is no measurement [sigma]")
@@ -89,7 +89,7 @@ class TrackerConfig(BaseModel):
     max_missed: float = Field(0.8, gt=0, description="life without a hit where it should be seen [s]")
     max_hidden: float = Field(6.0, gt=0, description="life without a hit in all [s]")
     max_coast: float = Field(
-        0.3, gt=0, description="life without a hit when no Sight is given [s]; one miss at the least"
+        0.18, gt=0, description="life without a hit when no Sight is given [s]; one miss at the least"
     )
     max_position_std: float = Field(10.0, gt=0, description="a track less certain than this dies [m]")
     duplicate_distance: float = Field(1.0, ge=0, description="tracks nearer than this are one [m]")
@@ -109,6 +109,7 @@ class TrackerConfig(BaseModel):
     whole_gain: float = Field(0.2, ge=0, le=1, description="gain either way where both ends are real")
     correct_ends: bool = Field(True, description="move partial boxes to where the whole one is")
     partial_std: float = Field(0.15, ge=0, description="extra deviation per metre of missing extent")
+    one_end_std: float = Field(0.05, ge=0, description="the same where rays show one end to be real")
 
     @model_validator(mode="after")
     def _existence(self) -> Self:

@@ -42,6 +42,7 @@ def as_bank(new: Newborns, stamp: float, size: int, config: TrackerConfig) -> Ba
         id=new.id,
         born=new.born,
         seen=np.full(n, stamp),
+        steady=new.born,
         fresh=np.ones(n, np.bool_),
         x=np.repeat(x[:, None], m, axis=1),
         P=np.repeat(P[:, None], m, axis=1),
@@ -63,6 +64,7 @@ def as_bank(new: Newborns, stamp: float, size: int, config: TrackerConfig) -> Ba
 def take_over(old: Bank, new: Bank) -> Bank:
     """New tracks under the identity of old ones, row by row: id, age, label and full size."""
     new.id, new.born, new.dynamic = old.id, old.born, old.dynamic
+    new.steady = new.seen
     new.size = np.maximum(new.size, old.size)
     new.past[:, :-1] = old.past[:, 1:]
     return new

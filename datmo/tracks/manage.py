@@ -14,6 +14,7 @@ from datmo.tracks.models import PSI, V
 from datmo.tracks.ukf import half_turn
 
 DRIFTS = int(Status.LAST) - int(Status.DRIFTING) + 1
+BREAK = 0.35  # [s] hits so far apart do not follow each other closely
 TOGETHER = 3  # scans for which two tracks must be near before they are one
 HIDDEN_SHARE = 0.2  # below this share in view a miss is no evidence at all
 COURSE_TIME, COURSE_SPEED, COURSE_OFF = 0.5, 2.0, 0.6  # [s], [m/s]: who goes so fast for so long is told by it
@@ -73,11 +74,12 @@ def duplicates(bank: Bank, mean: F64, config: TrackerConfig) -> Bool:
 def judge_motion(bank: Bank, mean: F64, P: F64, hit: Bool, stamp: float, config: TrackerConfig) -> None:
     """Static or dynamic (Alg. 4) from the last `window` seconds; the undecided keep their label.
 
-    A track younger than that may already be called dynamic, by a displacement beyond its doubt.
+    A track younger than that, or seen again for less, may already be called dynamic, by a displacement
+    beyond its doubt.
     """
     recent = bank.past[:, :, 0] >= stamp - config.window - 1e-6
     judged = hit & (recent.sum(axis=1) >= 3)
-    enough = judged & (stamp - bank.born >= config.window)
+    enough = judged & (stamp - bank.steady >= config.window)
     count = np.maximum(recent.sum(axis=1), 1)
     speed = np.where(recent, np.abs(bank.past[:, :, 3]), 0).sum(axis=1) / count
     first = np.argmax(recent, axis=1)

@@ -99,6 +99,7 @@ class Tracker:
             unmoved = links.missed > 1 - 1e-3
             hold_back(bank, unmoved, mean, P, self._lag(mean, sight), sight)
             mean, P = self._estimator.combined(bank)
+        bank.steady = np.where(hit & (stamp - bank.seen > manage.BREAK), stamp, bank.steady)
         bank.fresh, bank.seen = hit, np.where(hit, stamp, bank.seen)
         retain(bank, boxes, noise_factor(trusted, self.config), best, mean, dt, self.config)
         manage.charge(bank, hit, visible, empty, dt)

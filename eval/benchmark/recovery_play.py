@@ -46,8 +46,8 @@ class Played:
 
     Attributes:
         events: that hid and came out. censored: intervals that do not count.
-        ghosts: seconds that each owner outlived its object. nees, nis: of matched tracks, in each scan,
-        by dimension. switches: changes of the track matched to an object. minutes: scans played, in time.
+        ghosts: seconds that each owner outlived its object.
+        nees, nis: of matched tracks, in each scan, by dimension.
     """
 
     events: list[Event]

@@ -12,6 +12,7 @@ from eval.commands.benchmark_boxes import boxes
 from eval.commands.benchmark_detection import detection
 from eval.commands.benchmark_ground import ground
 from eval.commands.benchmark_lines import lines
+from eval.commands.benchmark_recovery import recovery
 from eval.commands.benchmark_tracker import tracker
 
 benchmark = typer.Typer(
@@ -35,6 +36,7 @@ benchmark.command("detection")(detection)
 benchmark.command("ground")(ground)
 benchmark.command("lines")(lines)
 benchmark.command("tracker")(tracker)
+benchmark.command("recovery")(recovery)
 
 
 @benchmark.command("cast")

@@ -16,6 +16,9 @@ Real = Annotated[
 Names = Annotated[
     list[str] | None, typer.Option("--sequence", metavar="NNNN", help="Play this one alone; repeatable.")
 ]
+FitNoise = Annotated[
+    bool, typer.Option("--fit-noise", help="Only tell what the labels say of the detections' noise.")
+]
 Ablation = Annotated[bool, typer.Option("--ablation", help="Also without each idea of the tracker, in turn.")]
 
 
@@ -23,6 +26,7 @@ def tracker(
     real: Real = None,
     sequence: Names = None,
     ablation: Ablation = False,
+    fit_noise: FitNoise = False,
     out: o.OutFolder = None,
     force: o.Force = False,
 ) -> None:
@@ -35,6 +39,7 @@ def tracker(
     Examples:
       datmo benchmark tracker
       datmo benchmark tracker --sequence 0003 --ablation --out runs/tracker
+      datmo benchmark tracker --fit-noise
     """
     from eval import console
     from eval.benchmark.ground_real import default_folder
@@ -51,6 +56,17 @@ def tracker(
     folder = (real or default_folder()) / "real" / "tracks"
     played = [read_drive(folder, name) for name in sequence or drives(folder)]
     screen = console.stdout()
+    if fit_noise:
+        from dataclasses import fields
+
+        from datmo.tracks import TrackerConfig
+        from eval.benchmark.tracker_noise import Noise, noise_table, residuals
+        from eval.benchmark.tracker_noise import fit_noise as fit
+
+        config = TrackerConfig()
+        used = Noise(**{f.name: getattr(config, f.name) for f in fields(Noise)})
+        screen.print(rich_table(noise_table(fit(residuals(played)), used)))
+        return
     scores = score_real(rivals(), played)
     screen.print(rich_table(table("real sequences", {name: each["all"] for name, each in scores.items()})))
     without = ablate(POINT_RCNN, played) if ablation else {}

@@ -56,3 +56,12 @@ def test_look_finds_what_was_put_there():
 def test_no_points_see_nothing():
     sight = make_sight(Scan(points=np.zeros((0, 3))))
     assert sight.far.max() == 0
+
+
+def test_columns_tell_when_their_rays_were_fired():
+    azimuth = np.deg2rad(np.array([10.1, 10.2, -170.2]))
+    points = np.column_stack([20 * np.cos(azimuth), 20 * np.sin(azimuth), np.full(3, -1.0)])
+    sight = make_sight(Scan(points=points, dt=[-0.04, -0.02, -0.09]))
+    when = sight.when(np.array([[20 * np.cos(0.177), 20 * np.sin(0.177)], [-30.0, -5.2], [20.0, 0.0]]))
+    np.testing.assert_allclose(when, [-0.03, -0.09, -0.03], atol=1e-6)  # the last from the nearest column
+    assert make_sight(Scan(points=np.zeros((0, 3)))).when(np.array([[1.0, 0.0]])).tolist() == [0]

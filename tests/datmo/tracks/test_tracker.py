@@ -62,7 +62,7 @@ def test_same_input_same_bytes():
 
 
 def test_a_circle_is_followed_through_pi_without_a_flip():
-    tracker, radius, rate = Tracker(), 12.0, 0.6
+    tracker, radius, rate = Tracker(TrackerConfig(given_std=(0.1, 0.1))), 12.0, 0.6
     rng = np.random.default_rng(0)
     for k in range(120):
         angle = rate * 0.1 * k
@@ -80,7 +80,7 @@ def test_a_circle_is_followed_through_pi_without_a_flip():
 
 def test_innovations_are_consistent():
     """NIS over matched noise: its mean is the dimension."""
-    config = TrackerConfig(position_std=0.15, whole_std=0.15)
+    config = TrackerConfig(position_std=0.15, given_std=(0.15, 0.15))
     values = []
     for seed in range(5):
         tracker = Tracker(config)
