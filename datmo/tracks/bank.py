@@ -23,6 +23,7 @@ class Bank:
         x: (t, m, n), P: (t, m, n, n), mu: (t, m) of each mode.
         missed: (t,) time without a hit where it should have been seen [s].
         existence: (t,) probability that there is such an object; 1 unless "jipda" is asked for.
+        known: (t, 2) whether both ends of the length, and of the width, were ever seen to be real.
         size: (t, 3) retained dimensions [m]. yaw: (t,) heading of the box [rad].
         z: (t,) height of the box's middle [m], climb: (t,) its rate [m/s].
         score: (t,), kind: (t,) of the last box.
@@ -40,6 +41,7 @@ class Bank:
     mu: F64
     missed: F64
     existence: F64
+    known: Bool
     size: F64
     yaw: F64
     z: F64
@@ -60,7 +62,8 @@ class Bank:
         x, P, mu = np.zeros((0, modes, size)), np.zeros((0, modes, size, size)), np.zeros((0, modes))
         flag, past = np.zeros(0, np.bool_), np.zeros((0, HISTORY, 4))
         return cls(
-            whole, real, real, real, flag, x, P, mu, real, real, np.zeros((0, 3)),
+            whole, real, real, real, flag, x, P, mu, real, real,
+            np.zeros((0, 2), np.bool_), np.zeros((0, 3)),
             real, real, real, real, whole, flag, real, past,
         )  # fmt: skip
 

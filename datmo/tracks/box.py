@@ -15,6 +15,7 @@ from datmo.tracks.visibility import judge
 CORNERS = np.array([[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]])  # of a box, by side
 BESIDE, BEYOND = np.deg2rad(0.75), 0.2  # past a corner, at the least [rad], [m], rays tell whether it is real
 HEIGHTS = np.array([-0.15, 0.0, 0.15, 0.3])  # where, in heights from the middle; not all rows have rays
+FACE = np.deg2rad(0.75)  # a face of less is not seen as one
 END_SLACK = 0.3  # [m] so much farther than the corner they must go
 LEAST = 0.1  # [m] a missing extent below this is noise
 LEAP = 1.5  # a box this many times the retained one is taken for a merger first
@@ -51,7 +52,7 @@ def read(
     missing = np.maximum(bank.size[track, :2] - seen, 0)
     missing = np.where(missing < LEAST, 0.0, missing)
     shift = np.zeros((len(track), 2))
-    whole, doubt = np.full((len(track), 2), sight is None), np.full((len(track), 2), config.partial_std)
+    whole = np.full((len(track), 2), sight is None)
     axes = np.stack([np.cos(turned), np.sin(turned), -np.sin(turned), np.cos(turned)], 1).reshape(-1, 2, 2)
     center = boxes.center[box]
     if sight is not None and config.correct_ends and len(track):
@@ -59,13 +60,12 @@ def read(
         then[:, :2] += sight.when(center)[:, None] * velocity(mean)[track]
         real = real_ends(sight, then, axes, seen, bank.size[track, 2])
         whole = np.asarray(real.all(axis=2))
-        doubt = np.where(real.any(axis=2), config.one_end_std, config.partial_std)
         shift = whole_center(center[:, :2], axes, seen, missing, real, mean[track, :2], sight)
     missing = np.where(whole, 0.0, missing)
     certain = config.given_std if sight is None else (config.whole_std, config.whole_std)
     std = np.where(whole, certain, config.position_std)
     std, yaw_std = std * factor[box, None], config.yaw_std * factor[box]
-    R = np.einsum("pa,pai,paj->pij", std**2 + (doubt * missing) ** 2, axes, axes)
+    R = np.einsum("pa,pai,paj->pij", std**2 + (config.partial_std * missing) ** 2, axes, axes)
     yaw = np.where(yaw_is_sure(boxes.size, config), boxes.yaw, np.nan)[box]
     n = len(track)
     return Pairs(
@@ -83,7 +83,8 @@ def real_ends(sight: Sight, center: F64, axes: F64, seen: F64, height: F64) -> B
     """(p, 2, 2) by side and end (back, front): whether what was seen really ends there.
 
     So it does when rays pass beside the outermost corner of that end, to either hand, and meet
-    nothing until well behind it. A corner that something nearer cuts off tells nothing.
+    nothing until well behind it. A corner that something nearer cuts off tells nothing, and a far one only
+    where the face that leads to it was seen: an end behind the body itself cannot be told from the near one.
 
     Args:
         center: (p, 3) [m, world]. axes: (p, 2, 2) unit vectors along and across. seen: (p, 2) extent [m].
@@ -94,6 +95,7 @@ def real_ends(sight: Sight, center: F64, axes: F64, seen: F64, height: F64) -> B
     middle, rows = center[:, :2] - sensor, np.arange(len(center))
     cross = middle[:, None, 0] * corners[..., 1] - middle[:, None, 1] * corners[..., 0]
     bearing = np.arctan2(cross, np.einsum("pi,pci->pc", middle, corners))
+    distance = np.hypot(corners[..., 0], corners[..., 1])
     for hand in (-1.0, 1.0):
         outer = np.argmax(hand * bearing, axis=1)
         x, y = corners[rows, outer].T
@@ -105,7 +107,10 @@ def real_ends(sight: Sight, center: F64, axes: F64, seen: F64, height: F64) -> B
         _, empty, _ = judge(sight, places.reshape(-1, 3), np.zeros(places[..., 0].size), END_SLACK)
         passed = empty.reshape(-1, len(HEIGHTS)).any(axis=1)
         for side in range(2):
-            real[rows, side, (CORNERS[outer, side] > 0).astype(int)] |= passed
+            other = outer ^ (2 >> side)  # the corner at the other end
+            ahead = hand * (bearing[rows, outer] - bearing[rows, other]) > FACE
+            told = ahead | (distance[rows, outer] < distance[rows, other])
+            real[rows, side, (CORNERS[outer, side] > 0).astype(int)] |= passed & told
     return real
 
 
@@ -143,6 +148,7 @@ def retain(
     grow = np.where(whole, config.whole_gain, config.grow)
     shrink = np.where(whole, config.whole_gain, config.shrink)
     gain = np.where(seen > old, np.where(seen > LEAP * old + 0.5, MERGER_GAIN, grow), shrink)
+    bank.known[t] |= pairs.whole.astype(bool)
     bank.size[t] = old + damped(gain, doubt[:, None]) * (seen - old)
     sure = np.isfinite(pairs.yaw)
     moves = np.abs(mean[t, 3]) > 2

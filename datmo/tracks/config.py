@@ -104,12 +104,17 @@ class TrackerConfig(BaseModel):
     static_speed: float = Field(0.5, gt=0, description="mean speed below which a track may be static [m/s]")
 
     # Box tracker (14)
+    bias_std: float = Field(
+        0.15, ge=0, description="error of a box's centre that stays from scan to scan, told in the covariance [m]"
+    )
+    unknown_side_std: float = Field(
+        0.2, ge=0, description="the same per metre of a side of which both ends were never seen"
+    )
     grow: float = Field(0.5, gt=0, le=1, description="gain when a box is larger than retained")
     shrink: float = Field(0.0, ge=0, le=1, description="gain when a box is smaller than retained")
     whole_gain: float = Field(0.2, ge=0, le=1, description="gain either way where both ends are real")
     correct_ends: bool = Field(True, description="move partial boxes to where the whole one is")
     partial_std: float = Field(0.15, ge=0, description="extra deviation per metre of missing extent")
-    one_end_std: float = Field(0.05, ge=0, description="the same where rays show one end to be real")
 
     @model_validator(mode="after")
     def _existence(self) -> Self:

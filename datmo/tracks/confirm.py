@@ -49,6 +49,7 @@ def as_bank(new: Newborns, stamp: float, size: int, config: TrackerConfig) -> Ba
         mu=np.full((n, m), 1 / m),
         missed=np.zeros(n),
         existence=at_birth(n, config),
+        known=np.zeros((n, 2), np.bool_),
         size=new.size,
         yaw=x[:, 2].copy(),
         z=new.z,
@@ -64,7 +65,7 @@ def as_bank(new: Newborns, stamp: float, size: int, config: TrackerConfig) -> Ba
 def take_over(old: Bank, new: Bank) -> Bank:
     """New tracks under the identity of old ones, row by row: id, age, label and full size."""
     new.id, new.born, new.dynamic = old.id, old.born, old.dynamic
-    new.steady = new.seen
+    new.steady, new.known = new.seen, old.known
     new.size = np.maximum(new.size, old.size)
     new.past[:, :-1] = old.past[:, 1:]
     return new

@@ -132,7 +132,7 @@ def realign(bank: Bank, mean: F64, hit: Bool, stamp: float) -> None:
         bank.P[rows, :, k, k] = std**2
     bank.mu[rows] = 1 / bank.mu.shape[1]
     across = rows[np.abs(half_turn(bank.yaw[rows] - course)) > np.pi / 4]
-    bank.size[across, :2] = bank.size[across, 1::-1]
+    bank.size[across, :2], bank.known[across] = bank.size[across, 1::-1], bank.known[across, ::-1]
     bank.yaw[across] = wrap_angle(bank.yaw[across] + np.pi / 2)
 
 

@@ -28,6 +28,17 @@ def predicted_boxes(bank: Bank, mean: F64) -> Boxes:
     )
 
 
+def lasting(bank: Bank, config: TrackerConfig) -> F64:
+    """Covariance (t, 2, 2) [m²] of what every box of a track is off by alike, which no filter can tell.
+
+    Larger along a side of which an end was never seen, as then its length is a guess.
+    """
+    std = config.bias_std + np.where(bank.known, 0.0, config.unknown_side_std * bank.size[:, :2])
+    c, s = np.cos(bank.yaw), np.sin(bank.yaw)
+    axes = np.stack([c, s, -s, c], 1).reshape(-1, 2, 2)
+    return np.asarray(np.einsum("ta,tai,taj->tij", std**2, axes, axes))
+
+
 def as_tracks(
     bank: Bank, mean: F64, P: F64, status: U8, new: Newborns, stamp: float, config: TrackerConfig
 ) -> Tracks:
@@ -45,6 +56,8 @@ def as_tracks(
     old = predicted_boxes(bank, mean)
     names = ("center", "size", "yaw", "velocity", "score", "id", "kind")
     both = Boxes(**{n: np.concatenate([getattr(old, n), getattr(young, n)]) for n in names})
+    P = P.copy()
+    P[:, :2, :2] += lasting(bank, config)
     modes = bank.mu.shape[1]
     order = np.argsort(both.id, kind="stable")
     return Tracks(
