@@ -44,7 +44,7 @@ def _fill(late: F64, number: F64) -> F64:
 def _extremes(
     points: F32, dt: F32, keep: Bool, edges: F64
 ) -> tuple[F32, F32, F64, F64]:  # pragma: no cover - compiled
-    """Nearest and farthest range (rows, columns), 0 where nothing returned; sum of times and number by column.
+    """Nearest and farthest range (rows, columns), 0 where nothing returned; times, numbers by column.
 
     Rows are found by the tangent of the elevation, which spares an arctangent.
     """

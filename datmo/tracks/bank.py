@@ -76,6 +76,11 @@ class Bank:
         pairs = ((getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
         return Bank(*(np.concatenate(pair) for pair in pairs))
 
+    def mark(self, hit: Bool, stamp: float, broken: float) -> None:
+        """Note which tracks `stamp` [s] hit (t,); after more than `broken` [s] hits begin to count anew."""
+        self.steady = np.where(hit & (stamp - self.seen > broken), stamp, self.steady)
+        self.fresh, self.seen = hit, np.where(hit, stamp, self.seen)
+
     def remember(self, stamp: float, mean: F64) -> None:
         """Append the state (t, n) at `stamp` to the past."""
         self.past[:, :-1] = self.past[:, 1:]

@@ -96,7 +96,7 @@ class Newborns:
         return rows[kept], columns[kept]
 
     def correct(self, rows: I64, boxes: Boxes, trust: F64, whole: bool, config: TrackerConfig) -> None:
-        """Take `boxes`, one for each of `rows`; sizes are averaged where boxes are `whole`, else they grow."""
+        """Take `boxes`, one for each of `rows`; the sizes of `whole` ones are averaged, others grow."""
         factor = noise_factor(trust, config)
         P = self.P[rows]
         S = P[:, :2, :2] + ((config.position_std * factor) ** 2)[:, None, None] * np.eye(2)

@@ -8,15 +8,10 @@ from datmo.arrays import F64, I64, Bool
 from datmo.messages import Boxes, Sight
 from datmo.tracks.bank import Bank
 from datmo.tracks.config import TrackerConfig
+from datmo.tracks.ends import real_ends, velocity
 from datmo.tracks.gate import Pairs
 from datmo.tracks.ukf import half_turn
-from datmo.tracks.visibility import judge
 
-CORNERS = np.array([[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]])  # of a box, by side
-BESIDE, BEYOND = np.deg2rad(0.75), 0.2  # past a corner, at the least [rad], [m], rays tell whether it is real
-HEIGHTS = np.array([-0.15, 0.0, 0.15, 0.3])  # where, in heights from the middle; not all rows have rays
-FACE = np.deg2rad(0.75)  # a face of less is not seen as one
-END_SLACK = 0.3  # [m] so much farther than the corner they must go
 LEAST = 0.1  # [m] a missing extent below this is noise
 LEAP = 1.5  # a box this many times the retained one is taken for a merger first
 MERGER_GAIN = 0.05
@@ -42,8 +37,7 @@ def read(
 ) -> Pairs:
     """Each candidate pair's measurement as the track reads it: its own axes, its whole extent.
 
-    Args:
-        factor: (k,) how many times the usual noise each box has.
+    factor: (k,) how many times the usual noise each box has.
     """
     turn = half_turn(boxes.yaw[box] - bank.yaw[track])
     crossed = np.abs(turn) > np.pi / 4
@@ -61,57 +55,13 @@ def read(
         real = real_ends(sight, then, axes, seen, bank.size[track, 2])
         whole = np.asarray(real.all(axis=2))
         shift = whole_center(center[:, :2], axes, seen, missing, real, mean[track, :2], sight)
-    missing = np.where(whole, 0.0, missing)
     certain = config.given_std if sight is None else (config.whole_std, config.whole_std)
-    std = np.where(whole, certain, config.position_std)
-    std, yaw_std = std * factor[box, None], config.yaw_std * factor[box]
-    R = np.einsum("pa,pai,paj->pij", std**2 + (config.partial_std * missing) ** 2, axes, axes)
+    std = np.where(whole, certain, config.position_std) * factor[box, None]
+    var = std**2 + (config.partial_std * np.where(whole, 0.0, missing)) ** 2
+    R = np.einsum("pa,pai,paj->pij", var, axes, axes)
     yaw = np.where(yaw_is_sure(boxes.size, config), boxes.yaw, np.nan)[box]
-    n = len(track)
-    return Pairs(
-        track, box, center[:, :2] + shift, R, seen, yaw, yaw_std**2, turned, whole,
-        np.zeros(n), np.zeros(n),
-    )  # fmt: skip
-
-
-def velocity(mean: F64) -> F64:
-    """(t, 2) [m/s] of states (t, n)."""
-    return np.asarray(mean[:, 3, None] * np.column_stack([np.cos(mean[:, 2]), np.sin(mean[:, 2])]))
-
-
-def real_ends(sight: Sight, center: F64, axes: F64, seen: F64, height: F64) -> Bool:
-    """(p, 2, 2) by side and end (back, front): whether what was seen really ends there.
-
-    So it does when rays pass beside the outermost corner of that end, to either hand, and meet
-    nothing until well behind it. A corner that something nearer cuts off tells nothing, and a far one only
-    where the face that leads to it was seen: an end behind the body itself cannot be told from the near one.
-
-    Args:
-        center: (p, 3) [m, world]. axes: (p, 2, 2) unit vectors along and across. seen: (p, 2) extent [m].
-        height: (p,) [m].
-    """
-    sensor, real = sight.T_world_sensor[:2, 3], np.zeros((len(center), 2, 2), np.bool_)
-    corners = np.einsum("ca,pa,pai->pci", CORNERS, seen / 2, axes) + (center[:, None, :2] - sensor)
-    middle, rows = center[:, :2] - sensor, np.arange(len(center))
-    cross = middle[:, None, 0] * corners[..., 1] - middle[:, None, 1] * corners[..., 0]
-    bearing = np.arctan2(cross, np.einsum("pi,pci->pc", middle, corners))
-    distance = np.hypot(corners[..., 0], corners[..., 1])
-    for hand in (-1.0, 1.0):
-        outer = np.argmax(hand * bearing, axis=1)
-        x, y = corners[rows, outer].T
-        beside = hand * np.maximum(BESIDE, BEYOND / np.maximum(np.hypot(x, y), 1.0))
-        c, s = np.cos(beside), np.sin(beside)
-        places = np.zeros((len(center), len(HEIGHTS), 3))
-        places[..., 0], places[..., 1] = (sensor[0] + c * x - s * y)[:, None], (sensor[1] + s * x + c * y)[:, None]
-        places[..., 2] = center[:, 2, None] + HEIGHTS * height[:, None]
-        _, empty, _ = judge(sight, places.reshape(-1, 3), np.zeros(places[..., 0].size), END_SLACK)
-        passed = empty.reshape(-1, len(HEIGHTS)).any(axis=1)
-        for side in range(2):
-            other = outer ^ (2 >> side)  # the corner at the other end
-            ahead = hand * (bearing[rows, outer] - bearing[rows, other]) > FACE
-            told = ahead | (distance[rows, outer] < distance[rows, other])
-            real[rows, side, (CORNERS[outer, side] > 0).astype(int)] |= passed & told
-    return real
+    yaw_var, none = (config.yaw_std * factor[box]) ** 2, np.zeros(len(track))
+    return Pairs(track, box, center[:, :2] + shift, R, seen, yaw, yaw_var, turned, whole, none, none)
 
 
 def whole_center(

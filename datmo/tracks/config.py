@@ -97,7 +97,9 @@ class TrackerConfig(BaseModel):
     recall: bool = Field(True, description="match new tracks to coasting and lost ones (second stage)")
     recall_chi2: float = Field(16.0, gt=0, description="gate of that match, six quantities")
 
-    hold_back: bool = Field(True, description="who is not found where rays see is likelier behind what hides it")
+    hold_back: bool = Field(
+        True, description="who is not found where rays see is likelier behind what hides it"
+    )
 
     # Static or dynamic (Alg. 4)
     window: float = Field(1.0, gt=0, description="time over which motion is judged [s]")
@@ -105,7 +107,9 @@ class TrackerConfig(BaseModel):
 
     # Box tracker (14)
     bias_std: float = Field(
-        0.15, ge=0, description="error of a box's centre that stays from scan to scan, told in the covariance [m]"
+        0.15,
+        ge=0,
+        description="error of a box's centre that stays from scan to scan, told in the covariance [m]",
     )
     unknown_side_std: float = Field(
         0.2, ge=0, description="the same per metre of a side of which both ends were never seen"

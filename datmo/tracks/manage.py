@@ -17,7 +17,11 @@ DRIFTS = int(Status.LAST) - int(Status.DRIFTING) + 1
 BREAK = 0.35  # [s] hits so far apart do not follow each other closely
 TOGETHER = 3  # scans for which two tracks must be near before they are one
 HIDDEN_SHARE = 0.2  # below this share in view a miss is no evidence at all
-COURSE_TIME, COURSE_SPEED, COURSE_OFF = 0.5, 2.0, 0.6  # [s], [m/s]: who goes so fast for so long is told by it
+COURSE_TIME, COURSE_SPEED, COURSE_OFF = (
+    0.5,
+    2.0,
+    0.6,
+)  # [s], [m/s]: who goes so fast for so long is told by it
 COURSE_STD = 0.2  # [rad]
 BACKWARD_SPEED, BACKWARD_TIME = 1.0, 1.0  # who reverses faster and longer than this was born turned around
 
@@ -94,6 +98,12 @@ def judge_motion(bank: Bank, mean: F64, P: F64, hit: Bool, stamp: float, config:
     bank.dynamic = np.where(enough & static, False, np.where(dynamic, True, bank.dynamic))
 
 
+def set_course(bank: Bank, mean: F64, hit: Bool, stamp: float, dt: float) -> None:
+    """Mend headings that the motion belies: across it, or the wrong way round."""
+    realign(bank, mean, hit, stamp)
+    turn_around(bank, mean, dt)
+
+
 def turn_around(bank: Bank, mean: F64, dt: float) -> None:
     """Turn tracks whose heading was taken the wrong way: (psi + pi, -v) is the same motion."""
     reversing = mean[:, V] < -BACKWARD_SPEED
@@ -126,7 +136,11 @@ def realign(bank: Bank, mean: F64, hit: Bool, stamp: float) -> None:
     off = np.hypot(*(told - way).T)
     rows = np.flatnonzero(known & (speed > COURSE_SPEED) & (off > COURSE_OFF * speed))
     course = np.arctan2(way[rows, 1], way[rows, 0])
-    bank.x[rows, :, PSI], bank.x[rows, :, V], bank.x[rows, :, V + 1 :] = course[:, None], speed[rows, None], 0.0
+    bank.x[rows, :, PSI], bank.x[rows, :, V], bank.x[rows, :, V + 1 :] = (
+        course[:, None],
+        speed[rows, None],
+        0.0,
+    )
     for k, std in ((PSI, COURSE_STD), (V, COURSE_SPEED / 2)):
         bank.P[rows, :, k, :] = bank.P[rows, :, :, k] = 0.0
         bank.P[rows, :, k, k] = std**2

@@ -13,9 +13,10 @@ from datmo.tracks import manage
 from datmo.tracks.assign import assign, innovations, likeliest
 from datmo.tracks.bank import Bank
 from datmo.tracks.birth import Newborns
-from datmo.tracks.box import retain, velocity
+from datmo.tracks.box import retain
 from datmo.tracks.config import TrackerConfig
 from datmo.tracks.confirm import as_bank, take_over, unclaimed
+from datmo.tracks.ends import velocity
 from datmo.tracks.engine_filterpy import FilterpyFilters
 from datmo.tracks.estimate import Estimator
 from datmo.tracks.existence import survive
@@ -28,6 +29,7 @@ from datmo.tracks.unseen import hold_back
 from datmo.tracks.visibility import shares
 
 HIT = 0.5  # association probability from which a track counts as seen
+UNSEEN = 1 - 1e-3  # probability of no box from which it was not seen at all
 ENGINES: dict[str, type[Filters]] = {"batched": BatchedFilters, "filterpy": FilterpyFilters}
 
 
@@ -94,18 +96,12 @@ class Tracker:
         self.nis = innovations(bank, mean, P, best)
         self._estimator.update(bank, pairs, links, ratio, before)
         hit = links.missed < HIT
-        mean, P = self._estimator.combined(bank)
-        if sight is not None and self.config.hold_back:
-            unmoved = links.missed > 1 - 1e-3
-            hold_back(bank, unmoved, mean, P, self._lag(mean, sight), sight)
-            mean, P = self._estimator.combined(bank)
-        bank.steady = np.where(hit & (stamp - bank.seen > manage.BREAK), stamp, bank.steady)
-        bank.fresh, bank.seen = hit, np.where(hit, stamp, bank.seen)
+        mean, P = self._held_back(links.missed > UNSEEN, sight)
+        bank.mark(hit, stamp, manage.BREAK)
         retain(bank, boxes, noise_factor(trusted, self.config), best, mean, dt, self.config)
         manage.charge(bank, hit, visible, empty, dt)
         manage.judge_motion(bank, mean, P, hit, stamp, self.config)
-        manage.realign(bank, mean, hit, stamp)
-        manage.turn_around(bank, mean, dt)
+        manage.set_course(bank, mean, hit, stamp, dt)
         bank.remember(stamp, mean)
         self._note_cuts(links.cut)
         free = unclaimed(boxes, pairs, links, bank, mean, hit, self.config)
@@ -164,6 +160,13 @@ class Tracker:
             return np.ones(len(mean)), np.zeros(len(mean))
         center = np.column_stack([mean[:, :2] + self._lag(mean, sight), self._bank.z])
         return shares(sight, center, self._bank.size, self._bank.yaw, P[:, :2, :2])
+
+    def _held_back(self, unseen: Bool, sight: Sight | None) -> tuple[F64, F64]:
+        mean, P = self._estimator.combined(self._bank)
+        if sight is None or not self.config.hold_back:
+            return mean, P
+        hold_back(self._bank, unseen, mean, P, self._lag(mean, sight), sight)
+        return self._estimator.combined(self._bank)
 
     @staticmethod
     def _lag(mean: F64, sight: Sight) -> F64:

@@ -57,7 +57,7 @@ def hold_back(bank: Bank, unseen: Bool, mean: F64, P: F64, lag: F64, sight: Sigh
 
 
 def _measure(bank: Bank, rows: I64, heading: F64, at: F64, shift: F64, share: F64, var: F64) -> None:
-    """The linear measurement of the place along `heading` that moves it by `shift` and leaves `share` of `var`."""
+    """Measure the place along `heading` such that it moves by `shift` and keeps `share` of `var`."""
     noise, distance = var * share / (1 - share), shift / (1 - share)
     x, P = bank.x[rows], bank.P[rows]
     of_place = np.einsum("tmij,tj->tmi", P[..., :2], heading)  # P h

@@ -52,9 +52,10 @@ def recovery_scene(motion: Motion, seconds: tuple[float, float], confusers: bool
     actors: list[Actor] = []
     things: list[Thing] = []
     for side in (-1.0, 1.0):
-        a, t = _stage(motion, seconds, confusers, side, rng)
-        actors += [actor.model_copy(update={"name": f"{actor.name}-{len(actors) + i}"}) for i, actor in enumerate(a)]
-        things.append(t)
+        passing, wall = _stage(motion, seconds, confusers, side, rng)
+        actors += passing
+        things.append(wall)
+    named = [actor.model_copy(update={"name": f"{actor.name}-{i}"}) for i, actor in enumerate(actors)]
     return Scenario(
         name=f"hidden-{motion}-{seed}",
         summary=f"{motion} behind walls for {seconds[0]:g} to {seconds[1]:g} s",
@@ -62,7 +63,7 @@ def recovery_scene(motion: Motion, seconds: tuple[float, float], confusers: bool
         terrain=Terrain(grade=float(rng.uniform(-0.05, 0.05)), roughness="C", road_roughness="A"),
         traffic=Traffic(environment=None, vehicles=0, warm_up=0.0),
         ego=Ego(control="parked"),
-        actors=tuple(actors),
+        actors=tuple(named),
         things=tuple(things),
     )
 

@@ -68,7 +68,9 @@ def compared(results: Sequence[Recovery]) -> Rows:
         row = [result.name]
         for seconds in BINS:
             events = [e for e, _ in result.owned("all", seconds)]
-            shares = [100 * np.mean([e.outcome == o for e in events]) for o in ("recovered", "wrong") if events]
+            shares = [
+                100 * np.mean([e.outcome == o for e in events]) for o in ("recovered", "wrong") if events
+            ]
             row.append(" / ".join(f"{share:.0f}" for share in shares) or "-")
         rows.append((*row, str(len(result.owned("all")))))
     heads = ("recovered / wrong [%]", *(f"{seconds} s" for seconds in BINS), "events")

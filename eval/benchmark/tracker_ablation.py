@@ -25,8 +25,10 @@ ABLATIONS: Mapping[str, Mapping[str, Any]] = {
     "nearest neighbour": {"association": "gnn"},
     "existence, not time": {"association": "jipda"},
     "crowds cut to two boxes": {"max_frontier": 2},
-    "five hits confirm": {"confirm_hits": 5, "confirm_score": None},
-    "any score starts a track": {"birth_score": 0.0},
+    "hits alone confirm": {"confirm_trust": 1.0},
+    "any box starts a track": {"birth_trust": 0.0, "least_trust": 0.0},
+    "scores ignored": {"scores": "ignored"},
+    "all boxes equally exact": {"doubt_noise": 0.0},
     "one miss is death": {"max_coast": 0.1},
     "life of half a second": {"max_coast": 0.5},
     "life of a second": {"max_coast": 1.0},
@@ -39,7 +41,7 @@ def ablate(
     base: TrackerConfig,
     played: Sequence[Drive],
     changes: Mapping[str, Mapping[str, Any]] = ABLATIONS,
-    coasting: bool = False,
+    coasting: bool = True,
 ) -> dict[str, RealScores]:
     """Figures over all sequences of the tracker as it is, under "all", and then with each change.
 

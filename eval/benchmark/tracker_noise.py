@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment, minimize
 
 from datmo.arrays import F64, Bool
 from datmo.errors import ConfigError
+from datmo.tracks import TrackerConfig
 from datmo.tracks.ukf import half_turn
 from eval.benchmark.kitti_tracks import Drive
 from eval.benchmark.table import Rows
@@ -92,12 +93,11 @@ def fit_noise(found: Residuals) -> Noise:
     return Noise(float(half), float(slope), factor, (base[0], base[1]), base[2])
 
 
-def noise_table(noise: Noise, used: Noise) -> Rows:
-    """The fit beside what the configuration has."""
-    rows = [
-        (name, _say(getattr(noise, name)), _say(getattr(used, name)))
-        for name in ("logit_half", "logit_slope", "doubt_noise", "given_std", "yaw_std")
-    ]
+def noise_table(played: Sequence[Drive]) -> Rows:
+    """The fit to some sequences beside what the configuration has."""
+    noise, config = fit_noise(residuals(played)), TrackerConfig()
+    names = [f.name for f in fields(Noise)]
+    rows = [(name, _say(getattr(noise, name)), _say(getattr(config, name))) for name in names]
     return Rows("noise", ("TrackerConfig", "from truth", "as it is"), tuple(rows), left=1)
 
 

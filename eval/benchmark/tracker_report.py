@@ -3,20 +3,37 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from datmo.tracks import TrackerConfig
+from eval.benchmark.kitti_tracks import Drive
 from eval.benchmark.table import Rows, markdown
-from eval.benchmark.tracker_real import LEAST_OVERLAP, RealScores
+from eval.benchmark.tracker_ablation import ablate
+from eval.benchmark.tracker_real import LEAST_OVERLAP, RealScores, score_real
+from eval.benchmark.tracker_rivals import rivals
 from eval.facts import hardware, versions
 from eval.output import writing_folder
 
 SHARES = ("hota", "deta", "assa", "mota", "idf1", "motp")
 COUNTS = ("switches", "fragmentations", "false", "missed")
+
+
+def score(
+    played: Sequence[Drive], ablation: bool
+) -> tuple[dict[str, dict[str, RealScores]], dict[str, RealScores]]:
+    """Figures of all trackers on some sequences, and of ours without each of its ideas if asked for."""
+    return score_real(rivals(), played), ablate(TrackerConfig(), played) if ablation else {}
+
+
+def shown(scores: Mapping[str, Mapping[str, RealScores]], ablation: Mapping[str, RealScores]) -> list[Rows]:
+    """The trackers side by side, and the ablation where there is one."""
+    made = [table("real sequences", {name: each["all"] for name, each in scores.items()})]
+    return [*made, table("ablation", ablation)] if ablation else made
 
 
 def table(title: str, scores: Mapping[str, RealScores]) -> Rows:
@@ -59,10 +76,8 @@ def write(
     Raises:
         OutputError: `folder` exists and `force` is not set.
     """
-    tables = [table("real sequences", {name: each["all"] for name, each in scores.items()})]
-    tables += [table("ablation", ablation)] if ablation else []
     with writing_folder(folder, force) as beside:
         text = json.dumps(record(scores, ablation), indent=1, allow_nan=False) + "\n"
         (beside / "tracker.json").write_text(text, encoding="utf-8")
-        pages = "".join(f"{t.title}\n\n{markdown(t)}\n" for t in tables)
+        pages = "".join(f"{t.title}\n\n{markdown(t)}\n" for t in shown(scores, ablation))
         (beside / "tracker.md").write_text(pages, encoding="utf-8")

@@ -30,10 +30,9 @@ def tracker(
     out: o.OutFolder = None,
     force: o.Force = False,
 ) -> None:
-    """Trackers on the cars of KITTI tracking sequences, scored by TrackEval on 3-D overlap.
+    """Ours, the thesis's and a Kalman tracker on KITTI's cars, scored by TrackEval on 3-D overlap.
 
-    Ours tuned for such detections and as it comes, with and without what coasts; ours as the thesis
-    has it; a plain Kalman filter in the world. With --out, leaves tracker.json and tracker.md in DIR.
+    With --out, leaves tracker.json and tracker.md in DIR. See `datmo benchmark recovery` for what hides.
 
     \b
     Examples:
@@ -45,10 +44,8 @@ def tracker(
     from eval.benchmark.ground_real import default_folder
     from eval.benchmark.kitti_tracks import drives, read_drive
     from eval.benchmark.table import rich_table
-    from eval.benchmark.tracker_ablation import ablate
-    from eval.benchmark.tracker_real import score_real
-    from eval.benchmark.tracker_report import table, write
-    from eval.benchmark.tracker_rivals import POINT_RCNN, rivals
+    from eval.benchmark.tracker_noise import noise_table
+    from eval.benchmark.tracker_report import score, shown, write
     from eval.output import refuse_existing
 
     if out is not None:
@@ -57,21 +54,11 @@ def tracker(
     played = [read_drive(folder, name) for name in sequence or drives(folder)]
     screen = console.stdout()
     if fit_noise:
-        from dataclasses import fields
-
-        from datmo.tracks import TrackerConfig
-        from eval.benchmark.tracker_noise import Noise, noise_table, residuals
-        from eval.benchmark.tracker_noise import fit_noise as fit
-
-        config = TrackerConfig()
-        used = Noise(**{f.name: getattr(config, f.name) for f in fields(Noise)})
-        screen.print(rich_table(noise_table(fit(residuals(played)), used)))
+        screen.print(rich_table(noise_table(played)))
         return
-    scores = score_real(rivals(), played)
-    screen.print(rich_table(table("real sequences", {name: each["all"] for name, each in scores.items()})))
-    without = ablate(POINT_RCNN, played) if ablation else {}
-    if without:
-        screen.print(rich_table(table("ablation", without)))
+    scores, without = score(played, ablation)
+    for rows in shown(scores, without):
+        screen.print(rich_table(rows))
     if out is not None:
         write(scores, without, out, force)
         screen.print(f"written: {out}", markup=False)

@@ -76,10 +76,8 @@ def test_a_car_that_stops_behind_a_wall_is_waited_for(hold, kept):
     y, alive = -18.0, set()
     for k in range(55):
         y += 0.1 * float(np.clip(2.5 * np.sqrt(max(0.0 - y, 0)), 0, 6.0))  # stands at y = 0
-        if y < -7:
-            boxes = Boxes([[16.0, y, 0.0]], [[4.5, 1.8, 1.5]], [np.pi / 2])
-        else:
-            boxes = Boxes.empty()
+        seen = Boxes([[16.0, y, 0.0]], [[4.5, 1.8, 1.5]], [np.pi / 2])
+        boxes = seen if y < -7 else Boxes.empty()
         tracks = tracker.step(boxes, 0.1 * k, sight)
         alive = set(tracks.boxes.id[tracks.confirmed()].tolist())
     assert bool(alive) is kept

@@ -18,7 +18,9 @@ from sim.scene.script import Script
 
 def event(duration=0.7, motion="straight", confusers=0, outcome="recovered", owner=1, error=0.4):
     coasts = {t: Coast(error * t, error * t, 0.0) for t in (1.0, 2.0, 3.0) if t < duration}
-    return Event(1, 2.0, 2.0 + duration, motion, confusers, owner, outcome, False, 0.1, 0.1, coasts, [0.5, 4.0])
+    return Event(
+        1, 2.0, 2.0 + duration, motion, confusers, owner, outcome, False, 0.1, 0.1, coasts, [0.5, 4.0]
+    )
 
 
 def recovery(name="ours", events=None):
@@ -81,7 +83,11 @@ def test_the_curves_and_files_are_written(tmp_path):
     results = [recovery(), recovery("Kalman", []), recovery("thesis")]
     assert recovery_curves(results)[:4] == b"\x89PNG"
     write(results, [0], tmp_path / "out", force=False)
-    assert sorted(p.name for p in (tmp_path / "out").iterdir()) == ["recovery.json", "recovery.md", "recovery.png"]
+    assert sorted(p.name for p in (tmp_path / "out").iterdir()) == [
+        "recovery.json",
+        "recovery.md",
+        "recovery.png",
+    ]
 
 
 def test_no_seed_is_refused_and_ablations_are_configurations():
@@ -93,7 +99,9 @@ def test_no_seed_is_refused_and_ablations_are_configurations():
 
 @pytest.mark.long
 def test_ours_beside_itself_gives_the_same_tracks():
-    job = recovery_play.Job("straight", (0.5, 1.0), False, 7, beside={"again": TrackerConfig(), "Kalman": None})
+    job = recovery_play.Job(
+        "straight", (0.5, 1.0), False, 7, beside={"again": TrackerConfig(), "Kalman": None}
+    )
     played = recovery_play.play(job)
     assert played["ours"] == played["again"]
     assert len(played["ours"].events) >= 2

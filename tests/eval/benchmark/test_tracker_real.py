@@ -91,7 +91,7 @@ def test_what_coasts_is_reported_where_asked(drive: Drive) -> None:
     detections = [row(k, (3,) if k == 12 else (3, 5)) for k in range(FRAMES)]
     torn = Drive("torn", drive.stamps, tuple(detections), drive.truth)
     for make in (Ours, PlainKalman):
-        scores = score_real({"hit": make(), "coasting": make(coasting=True)}, [torn])
+        scores = score_real({"hit": make(coasting=False), "coasting": make(coasting=True)}, [torn])
         assert scores["hit"]["all"].fragmentations == 1
         assert scores["coasting"]["all"].fragmentations == 0
 
@@ -99,7 +99,7 @@ def test_what_coasts_is_reported_where_asked(drive: Drive) -> None:
 def test_ablations_are_known_fields(drive: Drive) -> None:
     for fields in ABLATIONS.values():
         assert set(fields) <= set(TrackerConfig.model_fields)
-    made = ablate(TrackerConfig(), [drive], {"three hits": {"confirm_hits": 3}})
+    made = ablate(TrackerConfig(scores="ignored"), [drive], {"three hits": {"confirm_hits": 3}})
     assert list(made) == [WHOLE, "three hits"]
     assert (made[WHOLE].missed, made["three hits"].missed) == (8, 4)
 
