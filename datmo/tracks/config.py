@@ -40,7 +40,7 @@ class TrackerConfig(BaseModel):
     )
     whole_std: float = Field(0.08, gt=0, description="noise where rays show both ends to be real [m]")
     given_std: tuple[float, float] = Field(
-        (0.05, 0.025), description="noise along and across boxes that come without a Sight [m]"
+        (0.08, 0.04), description="noise along and across boxes that come without a Sight [m]"
     )
     yaw_std: float = Field(0.06, gt=0, description="noise of a sure box yaw [rad]")
     use_yaw: bool = Field(True, description="box yaw is a third measurement, modulo pi")
@@ -57,8 +57,8 @@ class TrackerConfig(BaseModel):
     doubt_noise: float = Field(
         2.3, ge=0, description="extra deviations of a box that is hardly real, by sqrt(1 - trust)"
     )
-    least_trust: float = Field(0.1, ge=0, le=1, description="boxes less likely to be real are left out")
-    birth_trust: float = Field(0.5, ge=0, le=1, description="boxes less likely to be real start no track")
+    least_trust: float = Field(0.2, ge=0, le=1, description="boxes less likely to be real are left out")
+    birth_trust: float = Field(0.6, ge=0, le=1, description="boxes less likely to be real start no track")
 
     # Association (12)
     association: Literal["jpda", "pda", "gnn", "jipda"] = Field(
