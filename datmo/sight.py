@@ -28,16 +28,16 @@ def make_sight(scan: Scan, keep: Bool | None = None) -> Sight:
     return Sight(near=near, far=far, T_world_sensor=scan.T_world_sensor, dt=_fill(late, number))
 
 
-def _fill(late: F64, number: F64) -> F64:
+def _fill(late: F64, number: F64) -> F32:
     """Mean time of each column's returns; columns without any take that of the nearest one with some."""
     known = np.flatnonzero(number)
     if len(known) == 0:
-        return np.zeros(len(number))
+        return np.zeros(len(number), np.float32)
     here = np.arange(len(number))
     right = np.minimum(np.searchsorted(known, here), len(known) - 1)
     left = np.maximum(right - 1, 0)
     nearest = np.where(np.abs(known[left] - here) < np.abs(known[right] - here), known[left], known[right])
-    return np.asarray(late[nearest] / number[nearest])
+    return np.asarray(late[nearest] / number[nearest], np.float32)
 
 
 @njit(cache=True, nogil=True)
