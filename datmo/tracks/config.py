@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, PositiveFloat, model_validator
 
 
 class TrackerConfig(BaseModel):
@@ -39,7 +39,7 @@ class TrackerConfig(BaseModel):
         0.15, gt=0, description="noise of a box's centre where an end may be unseen [m]"
     )
     whole_std: float = Field(0.08, gt=0, description="noise where rays show both ends to be real [m]")
-    given_std: tuple[float, float] = Field(
+    given_std: tuple[PositiveFloat, PositiveFloat] = Field(
         (0.08, 0.04), description="noise along and across boxes that come without a Sight [m]"
     )
     yaw_std: float = Field(0.06, gt=0, description="noise of a sure box yaw [rad]")
