@@ -5,25 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from datmo.arrays import F64, U8, Bool
-from datmo.geometry import wrap_angle
 from datmo.messages import Status
 from datmo.tracks import existence
 from datmo.tracks.bank import Bank
 from datmo.tracks.config import TrackerConfig
-from datmo.tracks.models import PSI, V
-from datmo.tracks.ukf import half_turn
 
 DRIFTS = int(Status.LAST) - int(Status.DRIFTING) + 1
 BREAK = 0.35  # [s] hits so far apart do not follow each other closely
 TOGETHER = 3  # scans for which two tracks must be near before they are one
 HIDDEN_SHARE = 0.2  # below this share in view a miss is no evidence at all
-COURSE_TIME, COURSE_SPEED, COURSE_OFF = (
-    0.5,
-    2.0,
-    0.6,
-)  # [s], [m/s]: who goes so fast for so long is told by it
-COURSE_STD = 0.2  # [rad]
-BACKWARD_SPEED, BACKWARD_TIME = 1.0, 1.0  # who reverses faster and longer than this was born turned around
 
 
 def spent(bank: Bank, stamp: float, dt: float, has_sight: bool, config: TrackerConfig) -> F64:
@@ -96,58 +86,6 @@ def judge_motion(bank: Bank, mean: F64, P: F64, hit: Bool, stamp: float, config:
     left = judged & (displacement / span >= config.static_speed) & (displacement > sure)
     dynamic = left | enough & (speed >= 2 * config.static_speed)
     bank.dynamic = np.where(enough & static, False, np.where(dynamic, True, bank.dynamic))
-
-
-def set_course(bank: Bank, mean: F64, hit: Bool, stamp: float, dt: float) -> None:
-    """Mend headings that the motion belies: across it, or the wrong way round."""
-    realign(bank, mean, hit, stamp)
-    turn_around(bank, mean, dt)
-
-
-def turn_around(bank: Bank, mean: F64, dt: float) -> None:
-    """Turn tracks whose heading was taken the wrong way: (psi + pi, -v) is the same motion."""
-    reversing = mean[:, V] < -BACKWARD_SPEED
-    bank.backward = np.where(reversing, bank.backward + dt, 0.0)
-    rows = np.flatnonzero(bank.backward >= BACKWARD_TIME)
-    if len(rows) == 0:
-        return
-    bank.x[rows, :, PSI] = wrap_angle(bank.x[rows, :, PSI] + np.pi)
-    bank.x[rows, :, V] *= -1
-    bank.P[rows, :, V, :] *= -1
-    bank.P[rows, :, :, V] *= -1
-    bank.yaw[rows] = wrap_angle(bank.yaw[rows] + np.pi)
-    bank.backward[rows] = 0.0
-
-
-def realign(bank: Bank, mean: F64, hit: Bool, stamp: float) -> None:
-    """Point tracks along the way they go, where their state will not have it.
-
-    A track born across its motion follows by the random model alone: it stays on its object, yet
-    knows neither heading nor speed. Its own past does.
-    """
-    recent = bank.past[:, :, 0] >= stamp - COURSE_TIME - 1e-6
-    first = np.argmax(recent, axis=1)
-    start = bank.past[np.arange(len(bank)), first]
-    span = stamp - start[:, 0]
-    known = hit & recent.any(axis=1) & (span >= COURSE_TIME / 2) & (recent.sum(axis=1) >= 4)
-    way = np.where(known[:, None], (mean[:, :2] - start[:, 1:3]) / np.maximum(span, 1e-3)[:, None], 0.0)
-    speed = np.hypot(way[:, 0], way[:, 1])
-    told = mean[:, V, None] * np.column_stack([np.cos(mean[:, PSI]), np.sin(mean[:, PSI])])
-    off = np.hypot(*(told - way).T)
-    rows = np.flatnonzero(known & (speed > COURSE_SPEED) & (off > COURSE_OFF * speed))
-    course = np.arctan2(way[rows, 1], way[rows, 0])
-    bank.x[rows, :, PSI], bank.x[rows, :, V], bank.x[rows, :, V + 1 :] = (
-        course[:, None],
-        speed[rows, None],
-        0.0,
-    )
-    for k, std in ((PSI, COURSE_STD), (V, COURSE_SPEED / 2)):
-        bank.P[rows, :, k, :] = bank.P[rows, :, :, k] = 0.0
-        bank.P[rows, :, k, k] = std**2
-    bank.mu[rows] = 1 / bank.mu.shape[1]
-    across = rows[np.abs(half_turn(bank.yaw[rows] - course)) > np.pi / 4]
-    bank.size[across, :2], bank.known[across] = bank.size[across, 1::-1], bank.known[across, ::-1]
-    bank.yaw[across] = wrap_angle(bank.yaw[across] + np.pi / 2)
 
 
 def _apart(bank: Bank, i: int, j: int) -> float:

@@ -16,6 +16,7 @@ from datmo.tracks.birth import Newborns
 from datmo.tracks.box import retain
 from datmo.tracks.config import TrackerConfig
 from datmo.tracks.confirm import as_bank, take_over, unclaimed
+from datmo.tracks.course import set_course
 from datmo.tracks.ends import velocity
 from datmo.tracks.engine_filterpy import FilterpyFilters
 from datmo.tracks.estimate import Estimator
@@ -101,7 +102,7 @@ class Tracker:
         retain(bank, boxes, noise_factor(trusted, self.config), best, mean, dt, self.config)
         manage.charge(bank, hit, visible, empty, dt)
         manage.judge_motion(bank, mean, P, hit, stamp, self.config)
-        manage.set_course(bank, mean, hit, stamp, dt)
+        set_course(bank, mean, hit, stamp, dt)
         bank.remember(stamp, mean)
         self._note_cuts(links.cut)
         free = unclaimed(boxes, pairs, links, bank, mean, hit, self.config)
