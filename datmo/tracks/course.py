@@ -12,6 +12,7 @@ from datmo.tracks.ukf import half_turn
 
 COURSE_TIME, COURSE_SPEED = 0.5, 2.0  # [s], [m/s]: who goes so fast for so long shows where to
 COURSE_OFF = 0.6  # share of that speed by which the state may differ
+COURSE_BEND = 0.4  # share of the way by which its middle may lie off: a leap is no course
 COURSE_STD = 0.2  # [rad]
 BACKWARD_SPEED, BACKWARD_TIME = 1.0, 1.0  # who reverses faster and longer than this was born turned around
 
@@ -50,6 +51,9 @@ def realign(bank: Bank, mean: F64, hit: Bool, stamp: float) -> None:
     known = hit & recent.any(axis=1) & (span >= COURSE_TIME / 2) & (recent.sum(axis=1) >= 4)
     way = np.where(known[:, None], (mean[:, :2] - start[:, 1:3]) / np.maximum(span, 1e-3)[:, None], 0.0)
     speed = np.hypot(way[:, 0], way[:, 1])
+    halfway = bank.past[np.arange(len(bank)), (first + bank.past.shape[1] - 1) // 2, 1:3]
+    bend = np.hypot(*(2 * halfway - start[:, 1:3] - mean[:, :2]).T)
+    known &= np.nan_to_num(bend, nan=np.inf) < COURSE_BEND * speed * span
     told = mean[:, V, None] * np.column_stack([np.cos(mean[:, PSI]), np.sin(mean[:, PSI])])
     off = np.hypot(*(told - way).T)
     rows = np.flatnonzero(known & (speed > COURSE_SPEED) & (off > COURSE_OFF * speed))
