@@ -68,7 +68,7 @@ def bush(size: Size, seed: int) -> Form:
     half = np.array(size) / 2
     spray = min(BUSH_SPRAY, 0.5 * float(half.min()))
     count, side = sprays(BUSH_DENSITY * 4 / 3 * np.pi * float(np.prod(half)), spray, BUSH_MOST)
-    inner = half - side / np.sqrt(3)
+    inner = np.maximum(half - side / np.sqrt(3), 0)  # leaves are no smaller than they must be
     points = in_ball(round(SPARE * count), rng)
     places = clumped(points * inner + np.array([0, 0, half[2]]), count, 0.5 * size[0], rng)
     stems = []

@@ -7,7 +7,7 @@ from typing import get_args
 import numpy as np
 import pytest
 import trimesh
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from datmo.errors import SimulationError
@@ -109,6 +109,7 @@ SIDE = st.floats(0.2, 20)
 
 @settings(max_examples=80, deadline=None)
 @given(st.sampled_from(KINDS), SIDE, SIDE, SIDE, st.integers(0, 9))
+@example("bush", 13.75, 0.25, 9.0, 0)
 def test_any_size_makes_a_sound_shape(kind, length, width, height, seed):
     made = form(kind, (length, width, height), seed)
     assert np.isfinite(made.vertices).all()
