@@ -13,7 +13,6 @@ from datmo.tracks.config import TrackerConfig
 from datmo.tracks.existence import given_existence
 from datmo.tracks.gate import Pairs, densities, gate, near, size_ratios, sure_yaw, yaw_ratios
 from datmo.tracks.pda import Links
-from datmo.tracks.trust import noise_factor
 from datmo.tracks.ukf import inverse_2x2
 
 LEAST_WEIGHT = 1e-200
@@ -24,18 +23,18 @@ def assign(
     mean: F64,
     P: F64,
     boxes: Boxes,
-    trust: F64,
+    factor: F64,
     visible: F64,
     sight: Sight | None,
     config: TrackerConfig,
 ) -> tuple[Pairs, Links, F64]:
     """Gated pairs, their probabilities, and each pair's mode likelihood over their mean (p, m).
 
+    factor: (k,) how many times the usual noise each box has.
     P_D is that of full view times the share `visible` (t,), with a floor. Probabilities are those of
     tracks that exist; `bank.existence` is brought up to date.
     """
     reach = bank.size[:, 0] / 2 if sight is not None else np.zeros(len(bank))
-    factor = noise_factor(trust, config)
     pairs = read(bank, mean, boxes, factor, *near(mean, P, boxes.center, reach, config), sight, config)
     pairs = gate(pairs, mean, P, config)
     pairs.yaw = sure_yaw(pairs, mean, P, config)

@@ -8,8 +8,9 @@ from datmo.arrays import F64, I64, Bool
 from datmo.messages import Boxes, Sight
 from datmo.tracks.bank import Bank
 from datmo.tracks.config import TrackerConfig
-from datmo.tracks.ends import real_ends, velocity
+from datmo.tracks.ends import real_ends
 from datmo.tracks.gate import Pairs
+from datmo.tracks.models import velocity
 from datmo.tracks.ukf import half_turn
 
 LEAST = 0.1  # [m] a missing extent below this is noise

@@ -7,7 +7,7 @@ import numpy as np
 from datmo.arrays import F64, Bool
 from datmo.geometry import wrap_angle
 from datmo.tracks.bank import Bank
-from datmo.tracks.models import OMEGA, PSI, V
+from datmo.tracks.models import OMEGA, PSI, V, velocity
 from datmo.tracks.ukf import half_turn
 
 COURSE_TIME, COURSE_SPEED = 0.5, 2.0  # [s], [m/s]: who goes so fast for so long shows where to
@@ -54,8 +54,7 @@ def realign(bank: Bank, mean: F64, hit: Bool, stamp: float) -> None:
     halfway = bank.past[np.arange(len(bank)), (first + bank.past.shape[1] - 1) // 2, 1:3]
     bend = np.hypot(*(2 * halfway - start[:, 1:3] - mean[:, :2]).T)
     known &= np.nan_to_num(bend, nan=np.inf) < COURSE_BEND * speed * span
-    told = mean[:, V, None] * np.column_stack([np.cos(mean[:, PSI]), np.sin(mean[:, PSI])])
-    off = np.hypot(*(told - way).T)
+    off = np.hypot(*(velocity(mean) - way).T)
     rows = np.flatnonzero(known & (speed > COURSE_SPEED) & (off > COURSE_OFF * speed))
     course = np.arctan2(way[rows, 1], way[rows, 0])
     bank.x[rows, :, PSI], bank.x[rows, :, V] = course[:, None], speed[rows, None]

@@ -15,11 +15,6 @@ END_SLACK = 0.3  # [m] so much farther than the corner they must go
 FACE = np.deg2rad(0.75)  # a face of less is not seen as one
 
 
-def velocity(mean: F64) -> F64:
-    """(t, 2) [m/s] of states (t, n)."""
-    return np.asarray(mean[:, 3, None] * np.column_stack([np.cos(mean[:, 2]), np.sin(mean[:, 2])]))
-
-
 def real_ends(sight: Sight, center: F64, axes: F64, seen: F64, height: F64) -> Bool:
     """(p, 2, 2) by side and end (back, front): whether what was seen really ends there.
 

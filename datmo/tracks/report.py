@@ -9,6 +9,7 @@ from datmo.messages import Boxes, Tracks
 from datmo.tracks.bank import Bank
 from datmo.tracks.birth import Newborns
 from datmo.tracks.config import TrackerConfig
+from datmo.tracks.models import velocity
 from datmo.tracks.ukf import half_turn
 
 
@@ -16,12 +17,11 @@ def predicted_boxes(bank: Bank, mean: F64) -> Boxes:
     """Boxes (t) of the bank at the combined mean (t, n), heading along the motion."""
     heading = mean[:, 2]
     yaw = heading + half_turn(bank.yaw - heading)
-    velocity = mean[:, 3, None] * np.column_stack([np.cos(heading), np.sin(heading)])
     return Boxes(
         center=np.column_stack([mean[:, :2], bank.z]),
         size=bank.size,
         yaw=np.arctan2(np.sin(yaw), np.cos(yaw)),
-        velocity=velocity,
+        velocity=velocity(mean),
         score=bank.score.astype(np.float32),
         id=bank.id,
         kind=bank.kind.astype(np.uint8),

@@ -17,11 +17,11 @@ from datmo.tracks.box import retain
 from datmo.tracks.config import TrackerConfig
 from datmo.tracks.confirm import as_bank, take_over, unclaimed
 from datmo.tracks.course import set_course
-from datmo.tracks.ends import velocity
 from datmo.tracks.engine_filterpy import FilterpyFilters
 from datmo.tracks.estimate import Estimator
 from datmo.tracks.existence import survive
 from datmo.tracks.filters import Filters
+from datmo.tracks.models import velocity
 from datmo.tracks.recall import recall
 from datmo.tracks.report import as_tracks, predicted_boxes
 from datmo.tracks.trust import are_logits, noise_factor, trust
@@ -86,20 +86,20 @@ class Tracker:
             MessageError: stamp is not finite or does not follow the last one (`reset()` first).
         """
         self.notes, self.nis = {}, {}
-        stamp = float(stamp)
-        dt = self._elapsed(stamp)
+        stamp, dt = float(stamp), self._elapsed(float(stamp))
         boxes, trusted = self._accept(boxes.visible())
+        factor = noise_factor(trusted, self.config)
         bank, before = self._bank, self._bank.mu
         mean, P = self._predict(dt)
         visible, empty = self._expect(mean, P, sight)
-        pairs, links, ratio = assign(bank, mean, P, boxes, trusted, visible, sight, self.config)
+        pairs, links, ratio = assign(bank, mean, P, boxes, factor, visible, sight, self.config)
         best = likeliest(pairs, links, HIT)
         self.nis = innovations(bank, mean, P, best)
         self._estimator.update(bank, pairs, links, ratio, before)
         hit = links.missed < HIT
         mean, P = self._held_back(links.missed > UNSEEN, sight)
         bank.mark(hit, stamp, manage.BREAK)
-        retain(bank, boxes, noise_factor(trusted, self.config), best, mean, dt, self.config)
+        retain(bank, boxes, factor, best, mean, dt, self.config)
         manage.charge(bank, hit, visible, empty, dt)
         manage.judge_motion(bank, mean, P, hit, stamp, self.config)
         set_course(bank, mean, hit, stamp, dt)

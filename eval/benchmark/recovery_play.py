@@ -25,8 +25,6 @@ from eval.metrics.pairing import Pairer
 from eval.metrics.recovery import Event, recovery_events
 from sim.env import LidarEnv
 
-KALMAN = "Kalman"
-
 
 @dataclass(frozen=True)
 class Job:

@@ -27,7 +27,7 @@ def recovery(
     loop made. A seed gives about 80 events; 150 in every class take some 40 seeds, an hour of two cores.
     With --out, leaves recovery.json, .md and .png (the curves) in DIR.
 
-    \\b
+    \b
     Examples:
       datmo benchmark recovery --workers 2
       datmo benchmark recovery --seeds 40 --workers 2 --ablation --out runs/recovery

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from datmo.tracks.config import TrackerConfig
-from datmo.tracks.models.base import ACCEL, OMEGA, PSI, PX, PY, MotionModel, V
+from datmo.tracks.models.base import ACCEL, OMEGA, PSI, PX, PY, MotionModel, V, velocity
 from datmo.tracks.models.classic import ConstantTurn, ConstantVelocity, RandomMotion
 from datmo.tracks.models.curved import ConstantCurvature, ConstantSteering, ConstantTurnAcceleration
 
@@ -26,6 +26,7 @@ __all__ = [
     "V",
     "make_models",
     "state_size",
+    "velocity",
 ]
 
 MODELS: dict[str, Callable[[TrackerConfig], MotionModel]] = {

@@ -36,6 +36,11 @@ class MotionModel(ABC):
         """Process noise (..., n, n) gathered over `dt` [s] by states (..., n)."""
 
 
+def velocity(mean: F64) -> F64:
+    """(t, 2) [m/s] of states (t, n)."""
+    return np.asarray(mean[:, V, None] * np.column_stack([np.cos(mean[:, PSI]), np.sin(mean[:, PSI])]))
+
+
 def unaccelerated(x: F64) -> F64:
     """States (..., n) with no acceleration, in place; nothing where the state has none."""
     x[..., ACCEL:] = 0
