@@ -11,9 +11,17 @@ from datmo.tracks.bank import Bank
 from datmo.tracks.box import read
 from datmo.tracks.config import TrackerConfig
 from datmo.tracks.existence import given_existence
-from datmo.tracks.gate import Pairs, densities, gate, near, size_ratios, sure_yaw, yaw_ratios
+from datmo.tracks.gate import (
+    Pairs,
+    densities,
+    gate,
+    near,
+    size_ratios,
+    squared_distance,
+    sure_yaw,
+    yaw_ratios,
+)
 from datmo.tracks.pda import Links
-from datmo.tracks.ukf import inverse_2x2
 
 LEAST_WEIGHT = 1e-200
 
@@ -66,5 +74,5 @@ def innovations(bank: Bank, mean: F64, P: F64, best: Pairs) -> dict[int, tuple[f
     """Normalised innovation squared of the likeliest box of each track, by id, and its dimension."""
     S = P[best.track][:, :2, :2] + best.R
     nu = best.z - mean[best.track, :2]
-    nis = np.einsum("pi,pij,pj->p", nu, inverse_2x2(S), nu)
+    nis = squared_distance(nu, S)
     return {int(i): (float(v), 2) for i, v in zip(bank.id[best.track], nis, strict=True)}

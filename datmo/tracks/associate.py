@@ -9,8 +9,7 @@ from __future__ import annotations
 from math import lgamma
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
+from numba import njit
 
 from datmo.arrays import F64, I64
 from datmo.tracks.config import TrackerConfig
@@ -69,17 +68,34 @@ def groups(pairs: Pairs, tracks: int, boxes: int) -> tuple[I64, list[I64]]:
     """Rows of the pairs of tracks that share no box; and of each set of tracks that share boxes,
     directly or through others.
     """
-    if len(pairs) == 0:
-        return np.zeros(0, np.int64), []
-    n = tracks + boxes
-    links = coo_array((np.ones(len(pairs)), (pairs.track, tracks + pairs.box)), shape=(n, n))
-    _, label = connected_components(links, directed=False)
-    of_pair = label[pairs.track]
-    crowded = np.bincount(label[:tracks], minlength=n)[of_pair] > 1
+    label, size = _labels(pairs.track, pairs.box, tracks, boxes)
+    crowded = size[label] > 1
     rows = np.flatnonzero(crowded)
-    order = rows[np.argsort(of_pair[rows], kind="stable")]
-    split = np.split(order, np.flatnonzero(np.diff(of_pair[order])) + 1) if len(order) else []
+    if len(rows) == 0:
+        return np.arange(len(pairs)), []
+    order = rows[np.argsort(label[rows], kind="stable")]
+    split = np.split(order, np.flatnonzero(np.diff(label[order])) + 1)
     return np.flatnonzero(~crowded), list(split)
+
+
+@njit(cache=True, nogil=True)
+def _labels(track: I64, box: I64, tracks: int, boxes: int) -> tuple[I64, I64]:  # pragma: no cover - compiled
+    """Of each pair a label of its group, and by label the number of tracks in it: union-find."""
+    parent = np.arange(tracks + boxes)
+    for p in range(len(track)):
+        a, b = track[p], tracks + box[p]
+        while parent[a] != a:
+            parent[a] = parent[parent[a]]
+            a = parent[a]
+        while parent[b] != b:
+            parent[b] = parent[parent[b]]
+            b = parent[b]
+        parent[max(a, b)] = min(a, b)
+    size = np.zeros(tracks + boxes, np.int64)
+    for k in range(tracks + boxes):
+        parent[k] = parent[parent[k]]
+        size[parent[k]] += k < tracks
+    return parent[track], size
 
 
 def clutter_weights(boxes: int, most: int, volume: float) -> F64:

@@ -67,14 +67,18 @@ class Bank:
             real, real, real, real, whole, flag, real, past,
         )  # fmt: skip
 
-    def select(self, rows: Array) -> Bank:
-        """A copy of `rows` (indices or a mask)."""
+    def select(self, rows: Array | slice) -> Bank:
+        """A copy of `rows` (indices, a mask, a slice)."""
         return self._map(lambda a: a[rows].copy())
 
     def join(self, other: Bank) -> Bank:
         """These tracks and then the others."""
         pairs = ((getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
         return Bank(*(np.concatenate(pair) for pair in pairs))
+
+    def split(self, count: int) -> tuple[Bank, Bank]:
+        """The first `count` tracks and the rest, the inverse of `join`."""
+        return self.select(slice(count)), self.select(slice(count, None))
 
     def mark(self, hit: Bool, stamp: float, broken: float) -> None:
         """Note which tracks `stamp` [s] hit (t,); after more than `broken` [s] hits begin to count anew."""

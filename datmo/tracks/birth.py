@@ -15,7 +15,7 @@ from datmo.geometry import wrap_angle
 from datmo.messages import Boxes
 from datmo.tracks.box import yaw_is_sure
 from datmo.tracks.config import TrackerConfig
-from datmo.tracks.gate import determinant
+from datmo.tracks.gate import determinant, squared_distance
 from datmo.tracks.trust import evidence, noise_factor
 from datmo.tracks.ukf import half_turn, inverse_2x2
 
@@ -87,7 +87,7 @@ class Newborns:
         R = (config.position_std * noise_factor(trust, config)) ** 2
         S = self.P[:, None, :2, :2] + R[None, :, None, None] * np.eye(2)
         nu = boxes.center[None, :, :2] - self.x[:, None, :2]
-        d = np.einsum("nbi,nbij,nbj->nb", nu, inverse_2x2(S), nu)
+        d = squared_distance(nu, S)
         cost = d + np.log(determinant(S))
         fits = (d <= config.gate_chi2) & _alike(self.size, boxes.size)
         cost = np.where(fits, cost, 1e6)

@@ -11,7 +11,25 @@ from datmo.arrays import F64
 from datmo.geometry import wrap_angle
 from datmo.tracks.filters import Filters
 from datmo.tracks.models import PSI, MotionModel
-from datmo.tracks.ukf import ALPHA, BETA, KAPPA, half_turn, mean_about, residual, square_root, tame
+from datmo.tracks.moments import tame
+from datmo.tracks.ukf import ALPHA, BETA, KAPPA, half_turn, square_root
+
+
+def residual(a: F64, b: F64) -> F64:
+    """a - b of states (..., n), the yaw on the circle."""
+    d = np.asarray(a - b)
+    d[..., PSI] = wrap_angle(d[..., PSI])
+    return d
+
+
+def mean_about(x: F64, weights: F64, reference: F64) -> F64:
+    """Weighted mean (..., n) of states (..., m, n), yaw taken as differences from `reference`.
+
+    Equal to the linear mean away from +-pi, and independent of where the circle is cut.
+    """
+    mean = np.einsum("...m,...mi->...i", weights, residual(x, reference[..., None, :])) + reference
+    mean[..., PSI] = wrap_angle(mean[..., PSI])
+    return np.asarray(mean)
 
 
 def _mean(sigmas: F64, weights: F64) -> F64:

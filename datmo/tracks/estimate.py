@@ -11,9 +11,9 @@ from datmo.tracks.config import TrackerConfig
 from datmo.tracks.filters import Filters
 from datmo.tracks.gate import Pairs
 from datmo.tracks.imm import combine, lend, mix, rates, reweigh, transition
-from datmo.tracks.models import ACCEL, OMEGA, PSI, make_models, state_size
+from datmo.tracks.models import ACCEL, OMEGA, make_models, state_size
+from datmo.tracks.moments import gathered, tame
 from datmo.tracks.pda import Links
-from datmo.tracks.ukf import residual, tame
 
 LONGEST_STEP = 0.5  # [s] longer gaps are predicted in parts
 MOVING_SPEED, STANDING_SHARE = 1.0, 0.02
@@ -78,14 +78,16 @@ class Estimator:
         x, P = prior_x[pairs.track].reshape(-1, n), prior_P[pairs.track].reshape(-1, n, n)
         z, R, yaw, var = (np.repeat(a, m, axis=0) for a in (pairs.z, pairs.R, pairs.yaw, pairs.yaw_var))
         x, P = self.filters.correct(x, P, z, R, yaw, var)
-        shift = residual(x.reshape(-1, m, n), prior_x[pairs.track])
-        spread = P.reshape(-1, m, n, n) + np.einsum("pmi,pmj->pmij", shift, shift)
-        moved, second = np.zeros_like(prior_x), prior_P * links.missed[:, None, None, None]
-        np.add.at(moved, pairs.track, links.beta[:, None, None] * shift)
-        np.add.at(second, pairs.track, links.beta[:, None, None, None] * spread)
-        bank.x = prior_x + moved
-        bank.x[..., PSI] = wrap_angle(bank.x[..., PSI])
-        bank.P = tame(second - np.einsum("tmi,tmj->tmij", moved, moved))
+        bank.x, second = gathered(
+            prior_x,
+            prior_P,
+            x.reshape(-1, m, n),
+            P.reshape(-1, m, n, n),
+            pairs.track,
+            links.beta,
+            links.missed,
+        )
+        bank.P = tame(second)
         likelihood = np.repeat(links.missed[:, None], m, axis=1)
         np.add.at(likelihood, pairs.track, links.beta[:, None] * ratio)
         bank.mu = reweigh(bank.mu, likelihood)

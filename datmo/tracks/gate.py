@@ -9,7 +9,7 @@ import numpy as np
 from datmo.arrays import F64, I64, Array
 from datmo.tracks.config import TrackerConfig
 from datmo.tracks.models import PSI
-from datmo.tracks.ukf import half_turn, inverse_2x2
+from datmo.tracks.ukf import half_turn
 
 YAW_OUTLIER = 0.05  # share of sure yaws that are wrong all the same
 SHAPE_FLOOR = 0.05  # a strange size alone never forbids a match
@@ -66,7 +66,7 @@ def gate(pairs: Pairs, mean: F64, P: F64, config: TrackerConfig) -> Pairs:
     """The pairs with nu' S^-1 nu <= eta, S of the combined prediction, shared by all modes."""
     S = P[pairs.track][:, :2, :2] + pairs.R
     nu = pairs.z - mean[pairs.track, :2]
-    pairs.distance = np.einsum("pi,pij,pj->p", nu, inverse_2x2(S), nu)
+    pairs.distance = squared_distance(nu, S)
     pairs.volume = np.pi * config.gate_chi2 * np.sqrt(determinant(S))
     return pairs.select(pairs.distance <= config.gate_chi2)
 
@@ -75,8 +75,7 @@ def densities(pairs: Pairs, x: F64, P: F64) -> F64:
     """N(nu_ij; 0, S_j) of each pair under each mode, (p, m) [1/m²]."""
     S = P[pairs.track][:, :, :2, :2] + pairs.R[:, None]
     nu = pairs.z[:, None] - x[pairs.track][:, :, :2]
-    distance = np.einsum("pmi,pmij,pmj->pm", nu, inverse_2x2(S), nu)
-    return np.asarray(np.exp(-0.5 * distance) / (2 * np.pi * np.sqrt(determinant(S))))
+    return np.asarray(np.exp(-0.5 * squared_distance(nu, S)) / (2 * np.pi * np.sqrt(determinant(S))))
 
 
 def yaw_ratios(pairs: Pairs, x: F64, P: F64) -> F64:
@@ -106,3 +105,10 @@ def sure_yaw(pairs: Pairs, mean: F64, P: F64, config: TrackerConfig) -> F64:
 def determinant(S: F64) -> F64:
     """Determinant of (..., 2, 2)."""
     return np.asarray(S[..., 0, 0] * S[..., 1, 1] - S[..., 0, 1] * S[..., 1, 0])
+
+
+def squared_distance(nu: F64, S: F64) -> F64:
+    """nu' S^-1 nu of (..., 2) and symmetric (..., 2, 2)."""
+    x, y = nu[..., 0], nu[..., 1]
+    form = S[..., 1, 1] * x**2 - 2 * S[..., 0, 1] * x * y + S[..., 0, 0] * y**2
+    return np.asarray(form / determinant(S))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from datmo.arrays import F64, U8
+from datmo.arrays import F64, U8, Array
 from datmo.messages import Boxes, Tracks
 from datmo.tracks.bank import Bank
 from datmo.tracks.birth import Newborns
@@ -15,17 +15,21 @@ from datmo.tracks.ukf import half_turn
 
 def predicted_boxes(bank: Bank, mean: F64) -> Boxes:
     """Boxes (t) of the bank at the combined mean (t, n), heading along the motion."""
+    return Boxes(**_predicted(bank, mean))
+
+
+def _predicted(bank: Bank, mean: F64) -> dict[str, Array]:
     heading = mean[:, 2]
     yaw = heading + half_turn(bank.yaw - heading)
-    return Boxes(
-        center=np.column_stack([mean[:, :2], bank.z]),
-        size=bank.size,
-        yaw=np.arctan2(np.sin(yaw), np.cos(yaw)),
-        velocity=velocity(mean),
-        score=bank.score.astype(np.float32),
-        id=bank.id,
-        kind=bank.kind.astype(np.uint8),
-    )
+    return {
+        "center": np.column_stack([mean[:, :2], bank.z]),
+        "size": bank.size,
+        "yaw": np.arctan2(np.sin(yaw), np.cos(yaw)),
+        "velocity": velocity(mean),
+        "score": bank.score,
+        "id": bank.id,
+        "kind": bank.kind,
+    }
 
 
 def lasting(bank: Bank, config: TrackerConfig) -> F64:
@@ -44,24 +48,22 @@ def as_tracks(
 ) -> Tracks:
     """Confirmed tracks and new ones, by id."""
     x, cov, _ = new.polar(config)
-    young = Boxes(
-        center=np.column_stack([x[:, :2], new.z]),
-        size=new.size,
-        yaw=x[:, 2],
-        velocity=new.x[:, 2:],
-        score=new.score.astype(np.float32),
-        id=new.id,
-        kind=new.kind.astype(np.uint8),
-    )
-    old = predicted_boxes(bank, mean)
-    names = ("center", "size", "yaw", "velocity", "score", "id", "kind")
-    both = Boxes(**{n: np.concatenate([getattr(old, n), getattr(young, n)]) for n in names})
+    young = {
+        "center": np.column_stack([x[:, :2], new.z]),
+        "size": new.size,
+        "yaw": x[:, 2],
+        "velocity": new.x[:, 2:],
+        "score": new.score,
+        "id": new.id,
+        "kind": new.kind,
+    }
+    order = np.argsort(np.concatenate([bank.id, new.id]), kind="stable")
+    both = {name: np.concatenate([old, young[name]])[order] for name, old in _predicted(bank, mean).items()}
     P = P.copy()
     P[:, :2, :2] += lasting(bank, config)
     modes = bank.mu.shape[1]
-    order = np.argsort(both.id, kind="stable")
     return Tracks(
-        boxes=both.select(order),
+        boxes=Boxes(**both),
         stamp=stamp,
         cov=np.concatenate([P[:, :5, :5], cov])[order],
         mode_prob=np.concatenate([bank.mu, np.full((len(new), modes), 1 / modes)])[order],

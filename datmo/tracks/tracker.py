@@ -88,9 +88,9 @@ class Tracker:
         self.notes, self.nis = {}, {}
         stamp, dt = float(stamp), self._elapsed(float(stamp))
         boxes, trusted = self._accept(boxes.visible())
-        factor = noise_factor(trusted, self.config)
-        bank, before = self._bank, self._bank.mu
+        factor, before = noise_factor(trusted, self.config), self._bank.mu
         mean, P = self._predict(dt)
+        bank = self._bank
         visible, empty = self._expect(mean, P, sight)
         pairs, links, ratio = assign(bank, mean, P, boxes, factor, visible, sight, self.config)
         best = likeliest(pairs, links, HIT)
@@ -139,22 +139,24 @@ class Tracker:
         sound = np.isfinite(numbers).all(axis=1) & (boxes.size > 0).all(axis=1)
         if not sound.all():
             bad = f"{int((~sound).sum())} of {len(boxes)}"
-            self.notes["boxes dropped"] = (
-                f"{bad} with a value that is not finite or a side that is not positive"
-            )
-        boxes = boxes.select(sound)
+            why = "a value that is not finite or a side that is not positive"
+            self.notes["boxes dropped"] = f"{bad} with {why}"
+            boxes = boxes.select(sound)
         self._logits = self._logits or are_logits(boxes.score)
         logits = {"auto": self._logits, "logit": True, "ignored": False}[self.config.scores]
         trusted = trust(boxes.score, logits, self.config)
         kept = trusted >= self.config.least_trust
-        return boxes.select(kept), trusted[kept]
+        return (boxes, trusted) if kept.all() else (boxes.select(kept), trusted[kept])
 
     def _predict(self, dt: float) -> tuple[F64, F64]:
         self._new.predict(dt, self.config)
-        if len(self._lost):
-            self._estimator.predict(self._lost, dt)
         self._bank.existence = survive(self._bank.existence, dt, self.config)
-        return self._estimator.predict(self._bank, dt)
+        if len(self._lost) == 0:
+            return self._estimator.predict(self._bank, dt)
+        count, both = len(self._bank), self._bank.join(self._lost)
+        mean, P = self._estimator.predict(both, dt)
+        self._bank, self._lost = both.split(count)
+        return mean[:count], P[:count]
 
     def _expect(self, mean: F64, P: F64, sight: Sight | None) -> tuple[F64, F64]:
         if sight is None:
@@ -200,29 +202,37 @@ class Tracker:
     def _settle(self, has_sight: bool) -> Tracks:
         """Confirm, recall, bury; what is alive now."""
         config, stamp = self.config, float(self._stamp or 0.0)
-        ripe, size = self._new.ripe(config), self._estimator.size
-        grown, self._new = as_bank(self._new.select(ripe), stamp, size, config), self._new.select(~ripe)
-        pool = self._bank.join(self._lost)
-        mean, P = self._estimator.combined(pool)
-        old, young = recall(pool, mean, P, grown, stamp, config)
-        rest = np.ones(len(grown), np.bool_)
-        rest[young] = False
-        taken = np.zeros(len(pool), np.bool_)
-        taken[old] = True
-        living = np.arange(len(pool)) < len(self._bank)
-        back = take_over(pool.select(old), grown.select(young))
-        self._lost = pool.select(~living & ~taken)
-        self._bury(pool.select(living & ~taken).join(back).join(grown.select(rest)), has_sight)
+        ripe = self._new.ripe(config)
+        if ripe.any():
+            grown, self._new = self._new.select(ripe), self._new.select(~ripe)
+            self._welcome(as_bank(grown, stamp, self._estimator.size, config))
+        mean, P = self._bury(has_sight)
         share = manage.spent(self._bank, stamp, self._dt, has_sight, config)
-        mean, P = self._estimator.combined(self._bank)
         return as_tracks(self._bank, mean, P, manage.status(share), self._new, stamp, config)
 
-    def _bury(self, bank: Bank, has_sight: bool) -> None:
-        config, stamp = self.config, float(self._stamp or 0.0)
+    def _welcome(self, grown: Bank) -> None:
+        """Take in tracks that were confirmed just now; some may be those that coast or were lost."""
+        pool, count = self._bank.join(self._lost), len(self._bank)
+        mean, P = self._estimator.combined(pool)
+        old, young = recall(pool, mean, P, grown, float(self._stamp or 0.0), self.config)
+        rest, taken = np.ones(len(grown), np.bool_), np.zeros(len(pool), np.bool_)
+        rest[young], taken[old] = False, True
+        back = take_over(pool.select(old), grown.select(young))
+        self._lost = self._lost.select(~taken[count:])
+        self._bank = self._bank.select(~taken[:count]).join(back).join(grown.select(rest))
+
+    def _bury(self, has_sight: bool) -> tuple[F64, F64]:
+        """Keep the living; their combined mean and covariance."""
+        bank, config, stamp = self._bank, self.config, float(self._stamp or 0.0)
         mean, P = self._estimator.combined(bank)
         living = manage.alive(mean, P, manage.spent(bank, stamp, self._dt, has_sight, config), config)
         double = manage.duplicates(bank, mean, config)
-        self._bank = bank.select(living & ~double)
-        finite = np.isfinite(mean).all(axis=1)
-        lost = self._lost.join(bank.select(~living & ~double & finite))
-        self._lost = lost.select(stamp - lost.seen < config.max_hidden)
+        kept = living & ~double
+        if not kept.all():
+            finite = np.isfinite(mean).all(axis=1)
+            self._lost = self._lost.join(bank.select(~living & ~double & finite))
+            self._bank, mean, P = bank.select(kept), mean[kept], P[kept]
+        recent = stamp - self._lost.seen < config.max_hidden
+        if not recent.all():
+            self._lost = self._lost.select(recent)
+        return mean, P

@@ -5,15 +5,15 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
+from numba import njit
 
 from datmo.arrays import F64
-from datmo.geometry import wrap_angle
 from datmo.tracks.filters import Filters
 from datmo.tracks.models import PSI, MotionModel
+from datmo.tracks.moments import tame, unscented, upper_root, wrapped
 
 ALPHA, BETA, KAPPA = 1.0, 2.0, 0.0
 JITTER = 1e-9
-MAX_STD = np.array([np.inf, np.inf, 1.0, 30.0, 1.5, 10.0])  # beyond these a deviation means nothing
 
 
 @cache
@@ -27,23 +27,6 @@ def weights(n: int) -> tuple[float, F64, F64]:
     return spread, mean, cov
 
 
-def residual(a: F64, b: F64) -> F64:
-    """a - b of states (..., n), the yaw on the circle."""
-    d = np.asarray(a - b)
-    d[..., PSI] = wrap_angle(d[..., PSI])
-    return d
-
-
-def mean_about(x: F64, weights: F64, reference: F64) -> F64:
-    """Weighted mean (..., n) of states (..., m, n), yaw taken as differences from `reference`.
-
-    Equal to the linear mean away from +-pi, and independent of where the circle is cut.
-    """
-    mean = np.einsum("...m,...mi->...i", weights, residual(x, reference[..., None, :])) + reference
-    mean[..., PSI] = wrap_angle(mean[..., PSI])
-    return np.asarray(mean)
-
-
 def square_root(P: F64) -> tuple[F64, int]:
     """Factors C (k, n, n), C C' = P, and how many matrices needed a jitter to have one.
 
@@ -51,19 +34,11 @@ def square_root(P: F64) -> tuple[F64, int]:
     world's axes lie, and those of the place alone enter every model linearly. So a turned world
     gives turned results, which the usual factor, place first, does not.
     """
-    C, repaired = _cholesky(P[:, ::-1, ::-1])
-    return C[:, ::-1, ::-1], repaired
-
-
-def _cholesky(P: F64) -> tuple[F64, int]:
-    try:
-        return np.asarray(np.linalg.cholesky(P), np.float64), 0
-    except np.linalg.LinAlgError:
-        factors, repaired = np.empty_like(P), 0
-        for i, matrix in enumerate(P):
-            factors[i], fixed = _repaired(matrix)
-            repaired += fixed
-        return factors, repaired
+    C, found = upper_root(np.ascontiguousarray(P))
+    bad = np.flatnonzero(~found)
+    for i in bad:
+        C[i] = _repaired(P[i, ::-1, ::-1])[::-1, ::-1]
+    return C, len(bad)
 
 
 def sigma_points(x: F64, P: F64) -> tuple[F64, int]:
@@ -71,14 +46,6 @@ def sigma_points(x: F64, P: F64) -> tuple[F64, int]:
     C, repaired = square_root(weights(x.shape[-1])[0] * P)
     columns = np.swapaxes(C, -1, -2)
     return np.concatenate([x[:, None], x[:, None] + columns, x[:, None] - columns], 1), repaired
-
-
-def tame(P: F64) -> F64:
-    """Symmetric covariance whose deviations stay within `MAX_STD`, scaled as D P D."""
-    P = 0.5 * (P + np.swapaxes(P, -1, -2))
-    std = np.sqrt(np.maximum(np.einsum("...ii->...i", P), 1e-300))
-    D = np.minimum(1.0, MAX_STD[: std.shape[-1]] / std)
-    return np.asarray(P * D[..., :, None] * D[..., None, :])
 
 
 class BatchedFilters(Filters):
@@ -91,9 +58,8 @@ class BatchedFilters(Filters):
         Q = model.noise(x, dt)
         moved = model.propagate(points, dt)
         _, of_mean, of_cov = weights(x.shape[-1])
-        mean = mean_about(moved, of_mean[None], moved[:, 0])
-        d = residual(moved, mean[:, None])
-        return mean, tame(np.einsum("m,nmi,nmj->nij", of_cov, d, d) + Q)
+        mean, cov = unscented(np.ascontiguousarray(moved), of_mean, of_cov, Q)
+        return mean, tame(cov)
 
     def correct(self, x: F64, P: F64, z: F64, R: F64, yaw: F64, yaw_var: F64) -> tuple[F64, F64]:
         """See `Filters` (2.36-2.43).
@@ -101,17 +67,37 @@ class BatchedFilters(Filters):
         Place and yaw are coordinates of the state, and a transform of redrawn sigma points through
         a linear function is exact: P_xz and P_z are blocks of P.
         """
-        S = P[:, :2, :2] + R
-        K = np.einsum("nij,njk->nik", P[:, :, :2], inverse_2x2(S))
-        x = x + np.einsum("nij,nj->ni", K, z - x[:, :2])
-        P = P - np.einsum("nij,njk,nlk->nil", K, S, K)
-        used = np.isfinite(yaw)
-        s = P[:, PSI, PSI] + np.where(used, yaw_var, 1.0)
-        k = np.where(used[:, None], P[:, :, PSI] / s[:, None], 0.0)
-        x = x + k * half_turn(np.where(used, yaw, 0.0) - x[:, PSI])[:, None]
-        P = P - s[:, None, None] * k[:, :, None] * k[:, None, :]
-        x[:, PSI] = wrap_angle(x[:, PSI])
+        x, P = np.array(x), np.array(P)
+        _corrected(x, P, z, R, yaw, yaw_var)
         return x, tame(P)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _corrected(x, P, z, R, yaw, yaw_var):  # type: ignore[no-untyped-def]  # pragma: no cover - compiled
+    """States (k, n) and covariances (k, n, n) by the place, then by the yaw where there is one; in place."""
+    count, n = x.shape
+    K, k = np.empty((n, 2)), np.empty(n)
+    for t in range(count):
+        a, b, c = P[t, 0, 0] + R[t, 0, 0], P[t, 0, 1] + R[t, 0, 1], P[t, 1, 1] + R[t, 1, 1]
+        det, dx, dy = a * c - b * b, z[t, 0] - x[t, 0], z[t, 1] - x[t, 1]
+        for i in range(n):
+            K[i, 0] = (P[t, i, 0] * c - P[t, i, 1] * b) / det
+            K[i, 1] = (P[t, i, 1] * a - P[t, i, 0] * b) / det
+            x[t, i] += K[i, 0] * dx + K[i, 1] * dy
+        for i in range(n):
+            u, v = K[i, 0] * a + K[i, 1] * b, K[i, 0] * b + K[i, 1] * c
+            for j in range(n):
+                P[t, i, j] -= u * K[j, 0] + v * K[j, 1]
+        if np.isfinite(yaw[t]):
+            s = P[t, PSI, PSI] + yaw_var[t]
+            d = (yaw[t] - x[t, PSI] + np.pi / 2) % np.pi - np.pi / 2
+            for i in range(n):
+                k[i] = P[t, i, PSI] / s
+            for i in range(n):
+                x[t, i] += k[i] * d
+                for j in range(n):
+                    P[t, i, j] -= s * k[i] * k[j]
+        x[t, PSI] = wrapped(x[t, PSI])
 
 
 def half_turn(angle: F64) -> F64:
@@ -121,16 +107,14 @@ def half_turn(angle: F64) -> F64:
 
 def inverse_2x2(S: F64) -> F64:
     """Inverse of symmetric (..., 2, 2)."""
-    a, b, c = S[..., 0, 0], S[..., 0, 1], S[..., 1, 1]
-    rows = np.stack([np.stack([c, -b], -1), np.stack([-b, a], -1)], -2)
-    return np.asarray(rows / (a * c - b * b)[..., None, None])
+    det, out = S[..., 0, 0] * S[..., 1, 1] - S[..., 0, 1] ** 2, np.empty_like(S)
+    out[..., 0, 0], out[..., 1, 1] = S[..., 1, 1] / det, S[..., 0, 0] / det
+    out[..., 0, 1] = out[..., 1, 0] = -S[..., 0, 1] / det
+    return out
 
 
-def _repaired(P: F64) -> tuple[F64, int]:
-    try:
-        return np.asarray(np.linalg.cholesky(P), np.float64), 0
-    except np.linalg.LinAlgError:
-        values, vectors = np.linalg.eigh(P)
-        lifted = np.maximum(values, JITTER * max(float(values[-1]), 1.0))
-        lifted_P = (vectors * lifted) @ vectors.T + JITTER * np.eye(len(P))
-        return np.asarray(np.linalg.cholesky(lifted_P), np.float64), 1
+def _repaired(P: F64) -> F64:
+    values, vectors = np.linalg.eigh(P)
+    lifted = np.maximum(values, JITTER * max(float(values[-1]), 1.0))
+    lifted_P = (vectors * lifted) @ vectors.T + JITTER * np.eye(len(P))
+    return np.asarray(np.linalg.cholesky(lifted_P), np.float64)

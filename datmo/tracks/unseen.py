@@ -14,7 +14,7 @@ from datmo.arrays import F64, I64, Bool
 from datmo.messages import Sight
 from datmo.tracks.bank import Bank
 from datmo.tracks.models import PSI, V
-from datmo.tracks.ukf import tame
+from datmo.tracks.moments import tame
 from datmo.tracks.visibility import looks
 
 GRID = np.linspace(-2.5, 2.5, 11)  # along the heading, in deviations of the place

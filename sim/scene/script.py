@@ -19,6 +19,7 @@ from sim.scene.walkers import gait
 
 STILL = 0.05  # below this speed [m/s] the heading is held
 FINE = 0.02  # spacing of the table of headings [s]
+SLOPE = 1e-4  # the slope of the curve is taken over this, to either side [s]
 NOTICE = 4.0  # others keep off the way of the next seconds [s]
 
 
@@ -65,6 +66,7 @@ class Script:
         self._table, self._headings = self._heading_table()
         speed = np.hypot(*self.velocity(self._table).T)
         mean = (speed[1:] + speed[:-1]) / 2
+        self._end_speeds = np.hypot(*self.velocity(self._table[[0, -1]]).T)
         self._arcs = np.concatenate([[0.0], np.cumsum(mean * np.diff(self._table))])
 
     @property
@@ -78,9 +80,8 @@ class Script:
 
     def velocity(self, times: F64) -> F64:
         """Velocities (m, 2) [m/s, world]: the curve's own slope."""
-        h = 1e-4
         t = np.asarray(times, float)
-        return (self.position(t + h) - self.position(t - h)) / (2 * h)
+        return (self.position(t + SLOPE) - self.position(t - SLOPE)) / (2 * SLOPE)
 
     def yaw(self, times: F64) -> F64:
         """Headings (m,) [rad, world], unwrapped."""
@@ -95,7 +96,7 @@ class Script:
         """Ways (m,) from the first way-point on [m], negative before it."""
         t = np.asarray(times, float)
         ends = self._table[[0, -1]]
-        before, after = np.hypot(*self.velocity(ends).T)
+        before, after = self._end_speeds
         beyond = np.minimum(t - ends[0], 0.0) * before + np.maximum(t - ends[1], 0.0) * after
         return np.asarray(np.interp(t, self._table, self._arcs) + beyond)
 
@@ -104,12 +105,14 @@ class Script:
         if self._waits:
             return State(name, looks, self._xy[0], float(self._headings[0]), np.zeros(2))
         t = np.array([time - self._began])
-        rate = float((self.yaw(t + FINE) - self.yaw(t - FINE))[0] / (2 * FINE))
-        velocity = self.velocity(t)[0]
+        behind, yaw, ahead = self.yaw(t + np.array([-FINE, 0.0, FINE]))
+        rate = float((ahead - behind) / (2 * FINE))
+        before, xy, after = self.position(t + np.array([-SLOPE, 0.0, SLOPE]))
+        velocity = (after - before) / (2 * SLOPE)
         speed = float(np.hypot(velocity[0], velocity[1]))
         cycle = gait.cycles(looks.asset, looks.kind, float(self.walked(t)[0]), speed)
         looks = replace(looks, asset=gait.key(looks.asset, looks.kind, cycle, speed))
-        return State(name, looks, self.position(t)[0], float(self.yaw(t)[0]), velocity, rate)
+        return State(name, looks, xy, float(yaw), velocity, rate)
 
     def claim(self, looks: Body, time: float) -> Claim:
         """The ground it stands on and the ground it will drive over in the next seconds."""

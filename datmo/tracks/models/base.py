@@ -10,6 +10,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 
 import numpy as np
+from numba import njit
 
 from datmo.arrays import F64
 
@@ -91,9 +92,20 @@ def turning(Q: F64, x: F64, dt: float, density: F64 | float) -> F64:
 
 def to_world(Q: F64, psi: F64) -> F64:
     """Q from axes along and across the heading `psi` (...) to the world's."""
-    G = np.zeros_like(Q)
-    c, s = np.cos(psi), np.sin(psi)
-    G[..., 0, 0], G[..., 0, 1], G[..., 1, 0], G[..., 1, 1] = c, -s, s, c
-    for i in range(2, Q.shape[-1]):
-        G[..., i, i] = 1
-    return np.asarray(np.einsum("...ij,...jk,...lk->...il", G, Q, G))
+    n = Q.shape[-1]
+    flat = np.ascontiguousarray(Q).reshape(-1, n, n)
+    _turn(flat, np.cos(psi).reshape(-1), np.sin(psi).reshape(-1))
+    return flat.reshape(Q.shape)
+
+
+@njit(cache=True, nogil=True)
+def _turn(Q: F64, c: F64, s: F64) -> None:  # pragma: no cover - compiled
+    """Turn the first two axes of Q (k, n, n) by angles of cosines `c`, sines `s` (k,), in place."""
+    n = Q.shape[1]
+    for t in range(len(Q)):
+        for i in range(n):
+            x, y = Q[t, 0, i], Q[t, 1, i]
+            Q[t, 0, i], Q[t, 1, i] = c[t] * x - s[t] * y, s[t] * x + c[t] * y
+        for i in range(n):
+            x, y = Q[t, i, 0], Q[t, i, 1]
+            Q[t, i, 0], Q[t, i, 1] = c[t] * x - s[t] * y, s[t] * x + c[t] * y

@@ -6,6 +6,8 @@ from math import factorial
 
 import numpy as np
 import pytest
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from datmo.tracks.associate import associate, clutter_weights, groups
 from datmo.tracks.config import TrackerConfig
@@ -155,6 +157,23 @@ def test_one_track_alone_equals_pda(clutter):
     scaled = weight if phi is not None else weight / config.clutter_density
     events = brute(scaled[None], np.array([miss]), phi)
     np.testing.assert_allclose(events[0, :3], links.beta, atol=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_groups_are_the_connected_components(seed):
+    """Against SciPy's graph search, on random links."""
+    rng = np.random.default_rng(seed)
+    tracks, boxes, count = 12, 10, int(rng.integers(0, 25))
+    link = np.unique(rng.integers(0, tracks * boxes, count))
+    pairs = some_pairs(link // boxes, link % boxes)
+    alone, crowds = groups(pairs, tracks, boxes)
+    ends = link // boxes, tracks + link % boxes
+    graph = coo_array((np.ones(len(link)), ends), shape=(tracks + boxes, tracks + boxes))
+    label = connected_components(graph, directed=False)[1]
+    shared = {k for k in label if len({t for t in ends[0] if label[t] == k}) > 1}
+    assert sorted(alone) == [p for p, t in enumerate(ends[0]) if label[t] not in shared]
+    wanted = [[p for p, t in enumerate(ends[0]) if label[t] == k] for k in shared]
+    assert sorted(rows.tolist() for rows in crowds) == sorted(wanted)
 
 
 def test_groups_are_independent():
