@@ -35,16 +35,17 @@ def test_a_scene_hides_its_owner_behind_the_wall_for_the_time_asked(motion, conf
         scene = recovery_scene(motion, (1.0, 2.0), confusers, seed)
         assert scene == recovery_scene(motion, (1.0, 2.0), confusers, seed)
         owners = [a for a in scene.actors if a.name.startswith("owner")]
-        assert len(owners) == 2
-        assert len(scene.actors) == 4
-        for owner, wall in zip(owners, scene.things, strict=True):
-            seconds = hidden_seconds(owner, wall)
-            assert 0.5 <= seconds <= 2.4, (seed, owner.name, seconds)  # a slow body is hidden a little later
+        assert len(owners) == 4
+        assert len(scene.actors) == 8
+        for k, owner in enumerate(owners):  # nearer and farther on the one side, then on the other
+            seconds = hidden_seconds(owner, scene.things[k // 2], scene.duration)
+            least, most = (0.5, 2.4) if k % 2 == 0 else (0.6, 3.4)
+            assert least <= seconds <= most, (seed, owner.name, seconds)  # a slow body hides a little later
 
 
-def hidden_seconds(owner, wall):
+def hidden_seconds(owner, wall, duration):
     """Time for which the middle of the body and both its ends lie in the shadow of the wall."""
-    script, times = Script(owner), np.arange(0, 10, 0.02)
+    script, times = Script(owner), np.arange(0, duration, 0.02)
     place, yaw = script.position(times) - EGO, script.yaw(times)
     half = {"car": 4.5, "van": 5.2, "bicycle": 1.8, "pedestrian": 0.6}[owner.kind] / 2
     shadow = np.ones(len(times), bool)
@@ -60,10 +61,10 @@ def test_confusers_come_near_while_it_is_hidden():
     for seed in range(10):
         scene = recovery_scene("straight", (2.0, 3.0), True, seed)
         for owner, other in zip(scene.actors[::2], scene.actors[1::2], strict=True):
-            t = np.arange(0, 10, 0.05)
+            t = np.arange(0, scene.duration, 0.05)
             gap = np.linalg.norm(Script(owner).position(t) - Script(other).position(t), axis=1)
             near += gap.min() < 4
-    assert near == 20
+    assert near == 40
 
 
 def test_tables_count_what_was_given():
@@ -95,6 +96,26 @@ def test_no_seed_is_refused_and_ablations_are_configurations():
         benchmark_recovery([])
     assert all(isinstance(c, TrackerConfig) and c != TrackerConfig() for c in ABLATIONS.values())
     assert len(BINS) == 4
+
+
+def test_classes_with_enough_events_are_played_no_more(monkeypatch):
+    """Each scene here gives two events of its class; three are enough, so two seeds of three are played."""
+    asked, told = [], []
+
+    def play(job):
+        asked.append(job)
+        found = [event(np.mean(job.seconds), job.motion, int(job.confusers))] * 2
+        return {name: recovery_play.Played(found, 0, [], [], []) for name in ("ours", "Kalman")}
+
+    monkeypatch.setattr("eval.benchmark.recovery.play", play)
+    ours, _ = benchmark_recovery([4, 5, 6], {"Kalman": None}, tell=told.append, enough=3)
+    alone = [(job.motion, job.seconds, job.seed) for job in asked if not job.confusers]
+    assert sorted({seed for _, _, seed in alone}) == [4, 5]
+    assert len(alone) == 24
+    assert {job.seed for job in asked if job.confusers} == {4}  # three motions fill a class at once
+    assert len(ours.events) == 2 * len(asked)
+    assert told == sorted(told)
+    assert told[-1] == 72
 
 
 @pytest.mark.long
