@@ -83,6 +83,10 @@ class Boxes(Message):
         """What of the boxes was seen; of those that are no detections, all."""
         return self
 
+    def whole_extent(self) -> F64:
+        """(k, 2) length and width of the whole, along the axes of what `visible` gives [m]."""
+        return self.size[:, :2]
+
 
 @dataclass(frozen=True, eq=False)
 class Detections(Boxes):
@@ -113,7 +117,7 @@ class Detections(Boxes):
 
     def visible(self) -> Boxes:
         """The seen parts alone, length >= width > 0, yaw in [-pi/2, pi/2)."""
-        along, across = self.seen[:, 1] - self.seen[:, 0], self.seen[:, 3] - self.seen[:, 2]
+        along, across = (self.seen[:, 1::2] - self.seen[:, ::2]).T
         x, y = (self.seen[:, 0] + self.seen[:, 1]) / 2, (self.seen[:, 2] + self.seen[:, 3]) / 2
         c, s = np.cos(self.yaw), np.sin(self.yaw)
         center, size = self.center.copy(), self.size.copy()
@@ -123,6 +127,11 @@ class Detections(Boxes):
         yaw = np.where(along >= across, self.yaw, self.yaw + np.pi / 2)
         yaw = (yaw + np.pi / 2) % np.pi - np.pi / 2
         return Boxes(center, size, yaw, self.velocity, self.score, self.id, self.kind)
+
+    def whole_extent(self) -> F64:
+        """See `Boxes`: where what was seen is longer across, the sides change places."""
+        along, across = (self.seen[:, 1::2] - self.seen[:, ::2]).T
+        return np.where((along >= across)[:, None], self.size[:, :2], self.size[:, 1::-1])
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from datmo.arrays import F64
-from datmo.messages import Boxes, Sight
+from datmo.messages import Sight
 from datmo.tracks.associate import associate
 from datmo.tracks.bank import Bank
 from datmo.tracks.box import read
@@ -21,6 +21,7 @@ from datmo.tracks.gate import (
     sure_yaw,
     yaw_ratios,
 )
+from datmo.tracks.measured import Measured
 from datmo.tracks.pda import Links
 
 LEAST_WEIGHT = 1e-200
@@ -30,20 +31,18 @@ def assign(
     bank: Bank,
     mean: F64,
     P: F64,
-    boxes: Boxes,
-    factor: F64,
+    given: Measured,
     visible: F64,
     sight: Sight | None,
     config: TrackerConfig,
 ) -> tuple[Pairs, Links, F64]:
     """Gated pairs, their probabilities, and each pair's mode likelihood over their mean (p, m).
 
-    factor: (k,) how many times the usual noise each box has.
     P_D is that of full view times the share `visible` (t,), with a floor. Probabilities are those of
     tracks that exist; `bank.existence` is brought up to date.
     """
     reach = bank.size[:, 0] / 2 if sight is not None else np.zeros(len(bank))
-    pairs = read(bank, mean, boxes, factor, *near(mean, P, boxes.center, reach, config), sight, config)
+    pairs = read(bank, mean, given, *near(mean, P, given.boxes.center, reach, config), sight, config)
     pairs = gate(pairs, mean, P, config)
     pairs.yaw = sure_yaw(pairs, mean, P, config)
     by_mode, shape = densities(pairs, bank.x, bank.P), np.ones(len(pairs))
@@ -56,7 +55,7 @@ def assign(
     miss = 1 - bank.existence * found
     weight = np.maximum((bank.existence * detection)[pairs.track] * density * shape, LEAST_WEIGHT)
     S = P[:, :2, :2] + config.position_std**2 * np.eye(2)
-    links = associate(pairs, weight, miss, len(boxes), config, S, mean[:, :2])
+    links = associate(pairs, weight, miss, len(given), config, S, mean[:, :2])
     links, bank.existence = given_existence(links, pairs.track, bank.existence, found)
     return pairs, links, by_mode / np.maximum(density, LEAST_WEIGHT)[:, None]
 

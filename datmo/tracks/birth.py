@@ -12,11 +12,11 @@ from scipy.optimize import linear_sum_assignment
 
 from datmo.arrays import F64, I64, Array, Bool
 from datmo.geometry import wrap_angle
-from datmo.messages import Boxes
 from datmo.tracks.box import yaw_is_sure
 from datmo.tracks.config import TrackerConfig
 from datmo.tracks.gate import determinant, squared_distance
-from datmo.tracks.trust import evidence, noise_factor
+from datmo.tracks.measured import Measured
+from datmo.tracks.trust import evidence
 from datmo.tracks.ukf import half_turn, inverse_2x2
 
 H = np.eye(2, 4)
@@ -52,9 +52,9 @@ class Newborns:
         return len(self.id)
 
     @classmethod
-    def start(cls, ids: I64, stamp: float, boxes: Boxes, trust: F64, config: TrackerConfig) -> Newborns:
-        """One track for each box, at rest with a wide prior; trust: (n,), see `datmo.tracks.trust`."""
-        n, factor = len(boxes), noise_factor(trust, config)
+    def start(cls, ids: I64, stamp: float, given: Measured, config: TrackerConfig) -> Newborns:
+        """One track for each box, at rest with a wide prior."""
+        n, boxes, factor = len(given), given.boxes, given.factor
         x, P = np.column_stack([boxes.center[:, :2], np.zeros((n, 2))]), np.zeros((n, 4, 4))
         P[:, [0, 1], [0, 1]] = ((config.position_std * factor) ** 2)[:, None]
         P[:, [2, 3], [2, 3]] = config.birth_speed_std**2
@@ -62,7 +62,7 @@ class Newborns:
             ids, np.full(n, stamp), x, P, np.ones(n, np.int64), np.zeros(n, np.int64),
             boxes.size.copy(), boxes.yaw.copy(), yaw_is_sure(boxes.size, config),
             boxes.center[:, 2].copy(), boxes.score.astype(float), boxes.kind.astype(np.int64),
-            evidence(trust), factor**-2,
+            evidence(given.trust), factor**-2,
         )  # fmt: skip
 
     def select(self, rows: Array) -> Newborns:
@@ -82,9 +82,9 @@ class Newborns:
         self.x = np.einsum("ij,nj->ni", F, self.x)
         self.P = np.einsum("ij,njk,lk->nil", F, self.P, F) + Q
 
-    def match(self, boxes: Boxes, trust: F64, config: TrackerConfig) -> tuple[I64, I64]:
+    def match(self, given: Measured, config: TrackerConfig) -> tuple[I64, I64]:
         """Rows (newborn, box) of the cheapest assignment within the gate."""
-        R = (config.position_std * noise_factor(trust, config)) ** 2
+        boxes, R = given.boxes, (config.position_std * given.factor) ** 2
         S = self.P[:, None, :2, :2] + R[None, :, None, None] * np.eye(2)
         nu = boxes.center[None, :, :2] - self.x[:, None, :2]
         d = squared_distance(nu, S)
@@ -95,16 +95,16 @@ class Newborns:
         kept = fits[rows, columns]
         return rows[kept], columns[kept]
 
-    def correct(self, rows: I64, boxes: Boxes, trust: F64, whole: bool, config: TrackerConfig) -> None:
-        """Take `boxes`, one for each of `rows`; the sizes of `whole` ones are averaged, others grow."""
-        factor = noise_factor(trust, config)
+    def correct(self, rows: I64, given: Measured, whole: bool, config: TrackerConfig) -> None:
+        """Take boxes, one for each of `rows`; the sizes of `whole` ones are averaged, others grow."""
+        boxes, factor = given.boxes, given.factor
         P = self.P[rows]
         S = P[:, :2, :2] + ((config.position_std * factor) ** 2)[:, None, None] * np.eye(2)
         K = np.einsum("nij,njk->nik", P[:, :, :2], inverse_2x2(S))
         self.x[rows] += np.einsum("nij,nj->ni", K, boxes.center[:, :2] - self.x[rows, :2])
         self.P[rows] = P - np.einsum("nij,njk,nlk->nil", K, S, K)
         self.hits[rows] += 1
-        self.evidence[rows] += evidence(trust)
+        self.evidence[rows] += evidence(given.trust)
         self.mass[rows] += factor**-2
         sure = yaw_is_sure(boxes.size, config)
         take = sure | ~self.sure[rows]

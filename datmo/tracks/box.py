@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from datmo.arrays import F64, I64, Bool
-from datmo.messages import Boxes, Sight
+from datmo.messages import Sight
 from datmo.tracks.bank import Bank
 from datmo.tracks.config import TrackerConfig
 from datmo.tracks.ends import real_ends
 from datmo.tracks.gate import Pairs
+from datmo.tracks.measured import Measured
 from datmo.tracks.models import velocity
 from datmo.tracks.ukf import half_turn
 
@@ -29,17 +30,14 @@ def yaw_is_sure(size: F64, config: TrackerConfig) -> Bool:
 def read(
     bank: Bank,
     mean: F64,
-    boxes: Boxes,
-    factor: F64,
+    given: Measured,
     track: I64,
     box: I64,
     sight: Sight | None,
     config: TrackerConfig,
 ) -> Pairs:
-    """Each candidate pair's measurement as the track reads it: its own axes, its whole extent.
-
-    factor: (k,) how many times the usual noise each box has.
-    """
+    """Each candidate pair's measurement as the track reads it: its own axes, its whole extent."""
+    boxes, factor = given.boxes, given.factor
     turn = half_turn(boxes.yaw[box] - bank.yaw[track])
     crossed = np.abs(turn) > np.pi / 4
     seen = np.where(crossed[:, None], boxes.size[box][:, 1::-1], boxes.size[box][:, :2])
@@ -84,15 +82,13 @@ def whole_center(
     return np.asarray(np.einsum("pa,pai->pi", along, axes))
 
 
-def retain(
-    bank: Bank, boxes: Boxes, factor: F64, pairs: Pairs, mean: F64, dt: float, config: TrackerConfig
-) -> None:
+def retain(bank: Bank, given: Measured, pairs: Pairs, mean: F64, dt: float, config: TrackerConfig) -> None:
     """Take the associated boxes (one pair a track) into the retained ones.
 
     Dimensions grow quickly and shrink slowly; the heading follows sure yaws, and the motion of a
     fast track without one; the height follows with its rate, so that a hidden track climbs on.
     """
-    t, b, doubt = pairs.track, pairs.box, factor[pairs.box]
+    boxes, t, b, doubt = given.boxes, pairs.track, pairs.box, given.factor[pairs.box]
     seen = np.column_stack([pairs.seen, boxes.size[b, 2]])
     old = bank.size[t]
     whole = np.column_stack([pairs.whole, pairs.whole.all(axis=1)])

@@ -87,6 +87,9 @@ class TrackerConfig(BaseModel):
     birth_speed_std: float = Field(10.0, gt=0, description="prior deviation of a new track's velocity [m/s]")
     claim: float = Field(0.5, gt=0, le=1, description="a box claimed less than this may start a track")
     max_missed: float = Field(0.8, gt=0, description="life without a hit where it should be seen [s]")
+    empty_weight: float = Field(
+        1.0, ge=0, description="how much more a miss counts where rays pass through the place"
+    )
     max_hidden: float = Field(6.0, gt=0, description="life without a hit in all [s]")
     max_coast: float = Field(
         0.18, gt=0, description="life without a hit when no Sight is given [s]; one miss at the least"

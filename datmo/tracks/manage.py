@@ -31,13 +31,14 @@ def status(share: F64) -> U8:
     return np.where(share <= 0, int(Status.TRACKING), drift).astype(np.uint8)
 
 
-def charge(bank: Bank, hit: Bool, visible: F64, empty: F64, dt: float) -> None:
+def charge(bank: Bank, hit: Bool, visible: F64, empty: F64, dt: float, config: TrackerConfig) -> None:
     """Add the time of a miss to each track's account, as far as it should have been seen.
 
-    Where rays pass through the place it counts double. A hit settles the account.
+    Where rays pass through the place it counts more. A hit settles the account.
     """
     share = np.where(visible < HIDDEN_SHARE, 0.0, visible)
-    bank.missed = np.where(hit, 0.0, bank.missed + dt * (share + np.where(share > 0, empty, 0.0)))
+    more = config.empty_weight * np.where(share > 0, empty, 0.0)
+    bank.missed = np.where(hit, 0.0, bank.missed + dt * (share + more))
 
 
 def alive(mean: F64, P: F64, share: F64, config: TrackerConfig) -> Bool:

@@ -21,10 +21,11 @@ from datmo.tracks.engine_filterpy import FilterpyFilters
 from datmo.tracks.estimate import Estimator
 from datmo.tracks.existence import survive
 from datmo.tracks.filters import Filters
+from datmo.tracks.measured import Measured, measured, sound
 from datmo.tracks.models import velocity
 from datmo.tracks.recall import recall
 from datmo.tracks.report import as_tracks, predicted_boxes
-from datmo.tracks.trust import are_logits, noise_factor, trust
+from datmo.tracks.trust import are_logits
 from datmo.tracks.ukf import BatchedFilters
 from datmo.tracks.unseen import hold_back
 from datmo.tracks.visibility import shares
@@ -61,7 +62,9 @@ class Tracker:
         """Forget every track; ids go on, so none is used twice."""
         shape = len(self.config.models), self._estimator.size
         self._bank, self._lost = Bank.empty(*shape), Bank.empty(*shape)
-        self._new = Newborns.start(np.zeros(0, np.int64), 0.0, Boxes.empty(), np.zeros(0), self.config)
+        self._new = Newborns.start(
+            np.zeros(0, np.int64), 0.0, measured(Boxes.empty(), False, self.config), self.config
+        )
         self._stamp: float | None = None
         self._logits = False
         self._dt = 0.0
@@ -87,26 +90,25 @@ class Tracker:
         """
         self.notes, self.nis = {}, {}
         stamp, dt = float(stamp), self._elapsed(float(stamp))
-        boxes, trusted = self._accept(boxes.visible())
-        factor, before = noise_factor(trusted, self.config), self._bank.mu
+        given, before = self._accept(boxes), self._bank.mu
         mean, P = self._predict(dt)
         bank = self._bank
         visible, empty = self._expect(mean, P, sight)
-        pairs, links, ratio = assign(bank, mean, P, boxes, factor, visible, sight, self.config)
+        pairs, links, ratio = assign(bank, mean, P, given, visible, sight, self.config)
         best = likeliest(pairs, links, HIT)
         self.nis = innovations(bank, mean, P, best)
         self._estimator.update(bank, pairs, links, ratio, before)
         hit = links.missed < HIT
         mean, P = self._held_back(links.missed > UNSEEN, sight)
         bank.mark(hit, stamp, manage.BREAK)
-        retain(bank, boxes, factor, best, mean, dt, self.config)
-        manage.charge(bank, hit, visible, empty, dt)
+        retain(bank, given, best, mean, dt, self.config)
+        manage.charge(bank, hit, visible, empty, dt, self.config)
         manage.judge_motion(bank, mean, P, hit, stamp, self.config)
         set_course(bank, mean, hit, stamp, dt)
         bank.remember(stamp, mean)
         self._note_cuts(links.cut)
-        free = unclaimed(boxes, pairs, links, bank, mean, hit, self.config)
-        self._births(boxes.select(free), trusted[free], sight is None)
+        free = unclaimed(given.boxes, pairs, links, bank, mean, hit, self.config)
+        self._births(given.select(free), sight is None)
         return self._settle(sight is not None)
 
     def predicted(self, stamp: float) -> Boxes:
@@ -133,20 +135,17 @@ class Tracker:
         self._stamp, self._dt = stamp, dt
         return dt
 
-    def _accept(self, boxes: Boxes) -> tuple[Boxes, F64]:
-        """The boxes that are sound, and how far each is to be trusted."""
-        numbers = np.column_stack([boxes.center, boxes.size, boxes.yaw, boxes.score])
-        sound = np.isfinite(numbers).all(axis=1) & (boxes.size > 0).all(axis=1)
-        if not sound.all():
-            bad = f"{int((~sound).sum())} of {len(boxes)}"
+    def _accept(self, boxes: Boxes) -> Measured:
+        """The boxes that are sound and likely to be real."""
+        good = sound(boxes)
+        if not good.all():
+            bad = f"{int((~good).sum())} of {len(boxes)}"
             why = "a value that is not finite or a side that is not positive"
             self.notes["boxes dropped"] = f"{bad} with {why}"
-            boxes = boxes.select(sound)
+            boxes = boxes.select(good)
         self._logits = self._logits or are_logits(boxes.score)
         logits = {"auto": self._logits, "logit": True, "ignored": False}[self.config.scores]
-        trusted = trust(boxes.score, logits, self.config)
-        kept = trusted >= self.config.least_trust
-        return (boxes, trusted) if kept.all() else (boxes.select(kept), trusted[kept])
+        return measured(boxes, logits, self.config)
 
     def _predict(self, dt: float) -> tuple[F64, F64]:
         self._new.predict(dt, self.config)
@@ -183,21 +182,20 @@ class Tracker:
             self.notes["covariances repaired"] = f"{self._estimator.filters.jitters} in this step"
             self._estimator.filters.jitters = 0
 
-    def _births(self, rest: Boxes, trusted: F64, whole: bool) -> None:
+    def _births(self, rest: Measured, whole: bool) -> None:
         new, config = self._new, self.config
-        rows, columns = new.match(rest, trusted, config)
-        new.correct(rows, rest.select(columns), trusted[columns], whole, config)
+        rows, columns = new.match(rest, config)
+        new.correct(rows, rest.select(columns), whole, config)
         missed = np.ones(len(new), np.bool_)
         missed[rows] = False
         new.misses += missed
-        fresh = trusted >= config.birth_trust
+        fresh = rest.trust >= config.birth_trust
         fresh[columns] = False
         born = rest.select(fresh)
         ids = np.arange(self._next_id, self._next_id + len(born))
         self._next_id += len(born)
         kept = new.select(new.misses <= config.birth_misses)
-        stamp = float(self._stamp or 0.0)
-        self._new = kept.join(Newborns.start(ids, stamp, born, trusted[fresh], config))
+        self._new = kept.join(Newborns.start(ids, float(self._stamp or 0.0), born, config))
 
     def _settle(self, has_sight: bool) -> Tracks:
         """Confirm, recall, bury; what is alive now."""

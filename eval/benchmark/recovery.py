@@ -10,6 +10,7 @@ from datmo.errors import ConfigError
 from datmo.tracks import TrackerConfig
 from eval.benchmark.recovery_play import Job, Played, play
 from eval.benchmark.recovery_scenes import MOTIONS, Motion
+from eval.benchmark.tracker_ablation import SIMULATED
 from eval.benchmark.tracker_rivals import THESIS
 from eval.metrics.recovery import Event
 from eval.metrics.recovery_scores import duration_class
@@ -29,19 +30,7 @@ GROUPS: Mapping[str, Callable[[Event], bool]] = {
 }
 """Which events count in each row."""
 RIVALS: Mapping[str, TrackerConfig | None] = {"thesis": THESIS, "Kalman": None}
-ABLATIONS: Mapping[str, TrackerConfig] = {
-    "each track by itself": TrackerConfig(association="pda"),
-    "nearest neighbour": TrackerConfig(association="gnn"),
-    "existence, not time": TrackerConfig(association="jipda", visible_floor=0.02),
-    "cv alone": TrackerConfig(models=("cv",)),
-    "cv and ctrv": TrackerConfig(models=("cv", "ctrv")),
-    "modes move while unseen": TrackerConfig(freeze_unseen=False),
-    "no yaw measured": TrackerConfig(use_yaw=False),
-    "size and heading weigh nothing": TrackerConfig(weigh_shape=False),
-    "no second stage": TrackerConfig(recall=False),
-    "boxes as they are": TrackerConfig(correct_ends=False),
-    "nothing learned from not being seen": TrackerConfig(hold_back=False),
-}
+ABLATIONS: Mapping[str, TrackerConfig] = {name: TrackerConfig(**fields) for name, fields in SIMULATED.items()}
 """Each idea of the tracker switched off, on the boxes that the loop made with all of them."""
 
 

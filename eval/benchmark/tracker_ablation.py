@@ -1,4 +1,4 @@
-"""What each idea of the tracker brings on real sequences: each switched off, in turn."""
+"""What each idea of the tracker brings: each switched off, in turn."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from eval.benchmark.kitti_tracks import Drive
 from eval.benchmark.tracker_real import RealScores, score_real
 from eval.benchmark.tracker_rivals import Ours
 
-ABLATIONS: Mapping[str, Mapping[str, Any]] = {
+BOTH: Mapping[str, Mapping[str, Any]] = {
     "cv alone": {"models": ("cv",)},
     "ctrv alone": {"models": ("ctrv",)},
     "rm alone": {"models": ("rm",)},
@@ -25,6 +25,9 @@ ABLATIONS: Mapping[str, Mapping[str, Any]] = {
     "nearest neighbour": {"association": "gnn"},
     "existence, not time": {"association": "jipda"},
     "crowds cut to two boxes": {"max_frontier": 2},
+}
+"""Fields of `TrackerConfig` that switch one idea off, by its name."""
+GIVEN: Mapping[str, Mapping[str, Any]] = {
     "hits alone confirm": {"confirm_trust": 1.0},
     "any box starts a track": {"birth_trust": 0.0, "least_trust": 0.0},
     "scores ignored": {"scores": "ignored"},
@@ -33,7 +36,21 @@ ABLATIONS: Mapping[str, Mapping[str, Any]] = {
     "life of half a second": {"max_coast": 0.5},
     "life of a second": {"max_coast": 1.0},
 }
-"""Fields of `TrackerConfig` that switch one idea off."""
+"""The same, of what tells only with scores, or where no rays are given."""
+RAYS: Mapping[str, Mapping[str, Any]] = {
+    "hidden or not, 0.8 s of life": {"max_hidden": 0.8},
+    "hidden or not, 3 s of life": {"max_missed": 3.0, "max_hidden": 3.0},
+    "free space is no evidence": {"empty_weight": 0.0},
+    "boxes as they are": {"correct_ends": False},
+    "nothing learned from not being seen": {"hold_back": False},
+}
+"""The same, of what needs the rays of the scan."""
+ABLATIONS: Mapping[str, Mapping[str, Any]] = {**BOTH, **GIVEN}
+SIMULATED: Mapping[str, Mapping[str, Any]] = {
+    **BOTH,
+    "existence, not time": {"association": "jipda", "visible_floor": 0.02},
+    **RAYS,
+}
 WHOLE = "all"
 
 

@@ -11,6 +11,7 @@ from datmo.tracks.birth import Newborns
 from datmo.tracks.config import TrackerConfig
 from datmo.tracks.engine_filterpy import FilterpyFilters
 from datmo.tracks.imm import combine, mix, rates, transition
+from datmo.tracks.measured import measured
 from datmo.tracks.models import make_models
 from datmo.tracks.ukf import BatchedFilters
 
@@ -97,7 +98,7 @@ def test_an_imm_of_one_linear_model_thrice_is_the_kalman_filter():
 def test_new_tracks_are_filtered_by_the_kalman_filter():
     config, rng = TrackerConfig(), np.random.default_rng(9)
     one = Boxes([[1.0, 2, 0]], [[4.5, 1.8, 1.5]], [0.0])
-    new, T = Newborns.start(np.array([1]), 0.0, one, np.ones(1), config), 0.1
+    new, T = Newborns.start(np.array([1]), 0.0, measured(one, False, config), config), 0.1
     kf = KalmanFilter(4, 2)
     kf.x, kf.P, kf.H, kf.R = (
         new.x[0].copy(),
@@ -110,7 +111,9 @@ def test_new_tracks_are_filtered_by_the_kalman_filter():
     for k in range(10):
         place = np.array([1 + 0.8 * k, 2 - 0.3 * k, 0]) + rng.normal(0, 0.1, 3)
         new.predict(T, config)
-        new.correct(np.array([0]), Boxes(place[None], one.size, one.yaw), np.ones(1), True, config)
+        new.correct(
+            np.array([0]), measured(Boxes(place[None], one.size, one.yaw), False, config), True, config
+        )
         kf.predict()
         kf.update(place[:2])
     np.testing.assert_allclose(new.x[0], kf.x, rtol=1e-9, atol=1e-9)
