@@ -15,6 +15,7 @@ from datmo.tracks.models import velocity
 from datmo.tracks.ukf import half_turn
 
 LEAST = 0.1  # [m] a missing extent below this is noise
+VEHICLE = 2.5  # [m] whoever shows a side so long is a vehicle, of which the detector knows the other side
 LEAP = 1.5  # a box this many times the retained one is taken for a merger first
 MERGER_GAIN = 0.05
 CLIMB_GAIN, HEIGHT_GAIN, MAX_GRADE = 0.05, 0.4, 0.2
@@ -37,30 +38,37 @@ def read(
     config: TrackerConfig,
 ) -> Pairs:
     """Each candidate pair's measurement as the track reads it: its own axes, its whole extent."""
-    boxes, factor = given.boxes, given.factor
+    boxes, factor = given.boxes, given.factor[box, None]
     turn = half_turn(boxes.yaw[box] - bank.yaw[track])
     crossed = np.abs(turn) > np.pi / 4
-    seen = np.where(crossed[:, None], boxes.size[box][:, 1::-1], boxes.size[box][:, :2])
     turned = bank.yaw[track] + np.where(crossed, turn - np.copysign(np.pi / 2, turn), turn)
+    seen = along_axes(boxes.size[box], crossed)
     missing = np.maximum(bank.size[track, :2] - seen, 0)
     missing = np.where(missing < LEAST, 0.0, missing)
-    shift = np.zeros((len(track), 2))
-    whole = np.full((len(track), 2), sight is None)
     axes = np.stack([np.cos(turned), np.sin(turned), -np.sin(turned), np.cos(turned)], 1).reshape(-1, 2, 2)
-    center = boxes.center[box]
+    center, real = boxes.center[box], np.full((len(track), 2, 2), sight is None)
+    shift = np.zeros((len(track), 2))
     if sight is not None and config.correct_ends and len(track):
         then = center.copy()  # where it was when the rays met it
         then[:, :2] += sight.when(center)[:, None] * velocity(mean)[track]
         real = real_ends(sight, then, axes, seen, bank.size[track, 2])
-        whole = np.asarray(real.all(axis=2))
         shift = whole_center(center[:, :2], axes, seen, missing, real, mean[track, :2], sight)
+    whole = np.asarray(real.all(axis=2))
+    cut = np.where(whole, 0.0, missing)
     certain = config.given_std if sight is None else (config.whole_std, config.whole_std)
-    std = np.where(whole, certain, config.position_std) * factor[box, None]
-    var = std**2 + (config.partial_std * np.where(whole, 0.0, missing)) ** 2
+    std = np.where(whole, certain, config.position_std) * factor
+    var = std**2 + (config.partial_std * cut) ** 2
+    var += np.where(real.any(axis=2), 0.0, config.unknown_end_std * cut) ** 2
     R = np.einsum("pa,pai,paj->pij", var, axes, axes)
     yaw = np.where(yaw_is_sure(boxes.size, config), boxes.yaw, np.nan)[box]
-    yaw_var, none = (config.yaw_std * factor[box]) ** 2, np.zeros(len(track))
+    part = 1 + config.partial_yaw * cut[:, 0] / np.maximum(seen[:, 0], LEAST)
+    yaw_var, none = (config.yaw_std * factor[:, 0] * part) ** 2, np.zeros(len(track))
     return Pairs(track, box, center[:, :2] + shift, R, seen, yaw, yaw_var, turned, whole, none, none)
+
+
+def along_axes(size: F64, crossed: Bool) -> F64:
+    """(p, 2) length and width, which change places where the box lies across the track."""
+    return np.where(crossed[:, None], size[:, 1::-1], size[:, :2])
 
 
 def whole_center(
@@ -89,14 +97,8 @@ def retain(bank: Bank, given: Measured, pairs: Pairs, mean: F64, dt: float, conf
     fast track without one; the height follows with its rate, so that a hidden track climbs on.
     """
     boxes, t, b, doubt = given.boxes, pairs.track, pairs.box, given.factor[pairs.box]
-    seen = np.column_stack([pairs.seen, boxes.size[b, 2]])
-    old = bank.size[t]
-    whole = np.column_stack([pairs.whole, pairs.whole.all(axis=1)])
-    grow = np.where(whole, config.whole_gain, config.grow)
-    shrink = np.where(whole, config.whole_gain, config.shrink)
-    gain = np.where(seen > old, np.where(seen > LEAP * old + 0.5, MERGER_GAIN, grow), shrink)
     bank.known[t] |= pairs.whole.astype(bool)
-    bank.size[t] = old + damped(gain, doubt[:, None]) * (seen - old)
+    _resize(bank, given, pairs, config)
     sure = np.isfinite(pairs.yaw)
     moves = np.abs(mean[t, 3]) > 2
     target = np.where(sure, pairs.yaw, mean[t, 2])
@@ -108,6 +110,23 @@ def retain(bank: Bank, given: Measured, pairs: Pairs, mean: F64, dt: float, conf
     climb = damped(CLIMB_GAIN, doubt) * error / max(dt, 1e-3)
     bank.climb[t] = np.clip(bank.climb[t] + climb, -limit, limit)
     bank.score[t], bank.kind[t] = boxes.score[b], boxes.kind[b]
+
+
+def _resize(bank: Bank, given: Measured, pairs: Pairs, config: TrackerConfig) -> None:
+    """Retained dimensions: what was seen; of a vehicle's side never seen whole also what is expected."""
+    t, b, boxes = pairs.track, pairs.box, given.boxes
+    seen = np.column_stack([pairs.seen, boxes.size[b, 2]])
+    old = bank.size[t]
+    whole = np.column_stack([pairs.whole, pairs.whole.all(axis=1)])
+    grow = np.where(seen > LEAP * old + 0.5, MERGER_GAIN, config.grow)
+    partial = np.where(seen > old, grow, config.shrink)
+    gain = np.where(whole, config.whole_gain, partial)
+    size = old + damped(gain, given.factor[b, None]) * (seen - old)
+    expected = along_axes(given.expected[b], np.abs(half_turn(pairs.turned - boxes.yaw[b])) > np.pi / 4)
+    told = ~bank.known[t] & (pairs.seen.max(axis=1) >= VEHICLE)[:, None]
+    more = np.where(told, np.maximum(expected - size[:, :2], 0.0), 0.0)
+    size[:, :2] += config.expected_gain * more
+    bank.size[t] = size
 
 
 def damped(gain: F64 | float, factor: F64) -> F64:

@@ -45,7 +45,7 @@ class TrackerConfig(BaseModel):
     yaw_std: float = Field(0.06, gt=0, description="noise of a sure box yaw [rad]")
     use_yaw: bool = Field(True, description="box yaw is a third measurement, modulo pi")
     yaw_gate: float = Field(3.5, gt=0, description="a yaw further off than this is no measurement [sigma]")
-    yaw_length: float = Field(1.5, ge=0, description="least box length whose yaw is sure [m]")
+    yaw_length: float = Field(2.2, ge=0, description="least box length whose yaw is sure [m]")
     yaw_ratio: float = Field(1.3, ge=1, description="least length over width whose yaw is sure")
     scores: Literal["auto", "logit", "ignored"] = Field(
         "auto",
@@ -121,6 +121,15 @@ class TrackerConfig(BaseModel):
     shrink: float = Field(0.0, ge=0, le=1, description="gain when a box is smaller than retained")
     whole_gain: float = Field(0.2, ge=0, le=1, description="gain either way where both ends are real")
     correct_ends: bool = Field(True, description="move partial boxes to where the whole one is")
+    expected_gain: float = Field(
+        0.1, ge=0, le=1, description="gain towards the detector's size of a vehicle's side never seen whole"
+    )
+    unknown_end_std: float = Field(
+        0.3, ge=0, description="extra deviation per metre of missing extent where no end is shown to be real"
+    )
+    partial_yaw: float = Field(
+        2.0, ge=0, description="how many times noisier a yaw is by missing over seen length"
+    )
     partial_std: float = Field(0.15, ge=0, description="extra deviation per metre of missing extent")
 
     @model_validator(mode="after")

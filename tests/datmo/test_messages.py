@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from datmo.errors import MessageError
-from datmo.messages import Boxes, Clusters, Frame, Ground, Plane, Scan, Sight, Tracks, visibility
+from datmo.messages import Boxes, Clusters, Detections, Frame, Ground, Plane, Scan, Sight, Tracks, visibility
 
 
 def scan(n: int = 4) -> Scan:
@@ -93,3 +93,14 @@ def test_sight_looks_in_the_direction_of_a_place() -> None:
 )
 def test_visibility_is_the_first_class_that_applies(solo: int, seen: int, expected: int) -> None:
     assert visibility(np.array([solo]), np.array([seen])).tolist() == [expected]
+
+
+def test_the_whole_extent_lies_along_what_is_seen():
+    """A car of which the rear alone is seen: its seen part is longer across."""
+    rear = Detections([[0, 0, 0]], [[4.5, 1.8, 1.5]], [0.3], seen=[[-2.25, -2.05, -0.9, 0.9]])
+    assert rear.visible().size[0, :2] == pytest.approx([1.8, 0.2])
+    assert rear.whole_extent()[0] == pytest.approx([1.8, 4.5])
+    side = Detections([[0, 0, 0]], [[4.5, 1.8, 1.5]], [0.3], seen=[[-2.25, 2.25, 0.7, 0.9]])
+    assert side.whole_extent()[0] == pytest.approx([4.5, 1.8])
+    plain = Boxes([[0, 0, 0]], [[4.5, 1.8, 1.5]], [0.3])
+    assert plain.whole_extent()[0] == pytest.approx([4.5, 1.8])
