@@ -110,7 +110,7 @@ class TrackerConfig(BaseModel):
 
     # Box tracker (14)
     bias_std: float = Field(
-        0.15,
+        0.18,
         ge=0,
         description="error of a box's centre that stays from scan to scan, told in the covariance [m]",
     )
