@@ -13,6 +13,7 @@ from scipy.ndimage import label as label_image
 from datmo.arrays import I32, I64, Bool
 from datmo.clusters.grid import PolarGrid
 from datmo.clusters.layers import Layers
+from datmo.union_find import join
 
 
 def connect_polar(layers: Layers, grid: PolarGrid) -> I32:
@@ -63,18 +64,4 @@ def _link(parent: I32, layer: I32, high: I32, rest: I32, a: int, other: int) -> 
     """Join layer a and those of the cell `other` that are not apart from it."""
     for b in range(layer[other], layer[other + 1]):
         if high[a] >= rest[b] and high[b] >= rest[a]:
-            _join(parent, a, b)
-
-
-@njit(cache=True, nogil=True)
-def _join(parent: I32, a: int, b: int) -> None:
-    while parent[a] != a:
-        parent[a] = parent[parent[a]]
-        a = parent[a]
-    while parent[b] != b:
-        parent[b] = parent[parent[b]]
-        b = parent[b]
-    if a < b:
-        parent[b] = a
-    else:
-        parent[a] = b
+            join(parent, a, b)

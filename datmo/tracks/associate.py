@@ -17,6 +17,7 @@ from datmo.tracks.gate import Pairs
 from datmo.tracks.jpda import marginals
 from datmo.tracks.nearest import nearest
 from datmo.tracks.pda import Links, pda, unassigned
+from datmo.union_find import join
 
 RASTER = 160  # cells a side for the area of several gates together
 
@@ -80,17 +81,10 @@ def groups(pairs: Pairs, tracks: int, boxes: int) -> tuple[I64, list[I64]]:
 
 @njit(cache=True, nogil=True)
 def _labels(track: I64, box: I64, tracks: int, boxes: int) -> tuple[I64, I64]:  # pragma: no cover - compiled
-    """Of each pair a label of its group, and by label the number of tracks in it: union-find."""
+    """Of each pair a label of its group, and by label the number of tracks in it."""
     parent = np.arange(tracks + boxes)
     for p in range(len(track)):
-        a, b = track[p], tracks + box[p]
-        while parent[a] != a:
-            parent[a] = parent[parent[a]]
-            a = parent[a]
-        while parent[b] != b:
-            parent[b] = parent[parent[b]]
-            b = parent[b]
-        parent[max(a, b)] = min(a, b)
+        join(parent, track[p], tracks + box[p])
     size = np.zeros(tracks + boxes, np.int64)
     for k in range(tracks + boxes):
         parent[k] = parent[parent[k]]
