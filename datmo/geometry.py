@@ -17,6 +17,11 @@ def wrap_angle(angle: Array | float) -> F64:
     return np.asarray((np.asarray(angle, float) + np.pi) % (2 * np.pi) - np.pi)
 
 
+def half_turn(angle: Array | float) -> F64:
+    """The same direction, heads and tails alike, in [-pi/2, pi/2) [rad]."""
+    return np.asarray((np.asarray(angle, float) + np.pi / 2) % np.pi - np.pi / 2)
+
+
 def transform(T_a_b: F64, points_b: Array) -> F64:
     """Points (n, 3) in b expressed in a, (n, 3) float64."""
     x, y, z = np.asarray(points_b, float).T

@@ -6,14 +6,14 @@ import numpy as np
 
 from datmo.arrays import F64, Bool
 from datmo.geometry import wrap_angle
+from datmo.tracks.association.pda import Links
 from datmo.tracks.bank import Bank
 from datmo.tracks.config import TrackerConfig
-from datmo.tracks.filters import Filters
-from datmo.tracks.gate import Pairs
-from datmo.tracks.imm import combine, lend, mix, rates, reweigh, transition
+from datmo.tracks.filters.base import Filters
+from datmo.tracks.filters.imm import combine, lend, mix, rates, reweigh, transition
+from datmo.tracks.filters.moments import gathered, tame
+from datmo.tracks.measurement.pairs import Pairs
 from datmo.tracks.models import ACCEL, OMEGA, make_models, state_size
-from datmo.tracks.moments import gathered, tame
-from datmo.tracks.pda import Links
 
 LONGEST_STEP = 0.5  # [s] longer gaps are predicted in parts
 MOVING_SPEED, STANDING_SHARE = 1.0, 0.02

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from datmo.arrays import F64, U8, Array
+from datmo.geometry import half_turn
 from datmo.messages import Boxes, Tracks
 from datmo.tracks.bank import Bank
-from datmo.tracks.birth import Newborns
 from datmo.tracks.config import TrackerConfig
+from datmo.tracks.management.birth import Newborns
 from datmo.tracks.models import velocity
-from datmo.tracks.ukf import half_turn
 
 
 def predicted_boxes(bank: Bank, mean: F64) -> Boxes:

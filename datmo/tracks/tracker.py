@@ -9,26 +9,26 @@ import numpy as np
 from datmo.arrays import F64, Bool
 from datmo.errors import ConfigError, MessageError
 from datmo.messages import Boxes, Sight, Tracks
-from datmo.tracks import manage
-from datmo.tracks.assign import assign, innovations, likeliest
+from datmo.tracks.association.assign import assign, innovations, likeliest
+from datmo.tracks.association.existence import survive
 from datmo.tracks.bank import Bank
-from datmo.tracks.birth import Newborns
-from datmo.tracks.box import retain
 from datmo.tracks.config import TrackerConfig
-from datmo.tracks.confirm import as_bank, take_over, unclaimed
-from datmo.tracks.course import set_course
-from datmo.tracks.engine_filterpy import FilterpyFilters
 from datmo.tracks.estimate import Estimator
-from datmo.tracks.existence import survive
-from datmo.tracks.filters import Filters
-from datmo.tracks.measured import Measured, measured, sound
+from datmo.tracks.filters.base import Filters
+from datmo.tracks.filters.engine_filterpy import FilterpyFilters
+from datmo.tracks.filters.ukf import BatchedFilters
+from datmo.tracks.management import manage
+from datmo.tracks.management.birth import Newborns
+from datmo.tracks.management.confirm import as_bank, take_over, unclaimed
+from datmo.tracks.management.course import set_course
+from datmo.tracks.management.recall import recall
+from datmo.tracks.measurement.box import retain
+from datmo.tracks.measurement.measured import Measured, measured, sound
+from datmo.tracks.measurement.trust import are_logits
+from datmo.tracks.measurement.unseen import hold_back
+from datmo.tracks.measurement.visibility import shares
 from datmo.tracks.models import velocity
-from datmo.tracks.recall import recall
 from datmo.tracks.report import as_tracks, predicted_boxes
-from datmo.tracks.trust import are_logits
-from datmo.tracks.ukf import BatchedFilters
-from datmo.tracks.unseen import hold_back
-from datmo.tracks.visibility import shares
 
 HIT = 0.5  # association probability from which a track counts as seen
 UNSEEN = 1 - 1e-3  # probability of no box from which it was not seen at all

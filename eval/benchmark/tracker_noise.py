@@ -10,8 +10,8 @@ from scipy.optimize import linear_sum_assignment, minimize
 
 from datmo.arrays import F64, Bool
 from datmo.errors import ConfigError
+from datmo.geometry import half_turn
 from datmo.tracks import TrackerConfig
-from datmo.tracks.ukf import half_turn
 from eval.benchmark.kitti_tracks import Drive
 from eval.benchmark.table import Rows
 from eval.benchmark.tracker_real import LEAST_OVERLAP

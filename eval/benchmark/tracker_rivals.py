@@ -8,10 +8,9 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from datmo.arrays import I64
-from datmo.geometry import wrap_angle
+from datmo.geometry import half_turn, wrap_angle
 from datmo.messages import Boxes, Status
 from datmo.tracks import Tracker, TrackerConfig
-from datmo.tracks.ukf import half_turn
 
 THESIS = TrackerConfig(
     use_yaw=False,

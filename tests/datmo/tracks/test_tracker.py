@@ -11,7 +11,7 @@ from datmo.errors import ConfigError, DatmoError
 from datmo.geometry import wrap_angle
 from datmo.messages import Boxes
 from datmo.tracks import Tracker, TrackerConfig
-from datmo.tracks.manage import status
+from datmo.tracks.management.manage import status
 from datmo.tracks.models import make_models
 
 

@@ -21,11 +21,11 @@ from stonesoup.updater.kalman import KalmanUpdater
 
 from datmo.messages import Boxes
 from datmo.tracks import Tracker, TrackerConfig
-from datmo.tracks.associate import associate
-from datmo.tracks.existence import given_existence
-from datmo.tracks.gate import Pairs
-from datmo.tracks.jpda import marginals
-from datmo.tracks.pda import Links
+from datmo.tracks.association.associate import associate
+from datmo.tracks.association.existence import given_existence
+from datmo.tracks.association.jpda import marginals
+from datmo.tracks.association.pda import Links
+from datmo.tracks.measurement.pairs import Pairs
 
 METHODS = ("jpda", "pda", "gnn", "jipda")
 SEEDS = st.integers(0, 2**32 - 1)

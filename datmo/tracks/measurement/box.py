@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from datmo.arrays import F64, I64, Bool
+from datmo.geometry import half_turn
 from datmo.messages import Sight
 from datmo.tracks.bank import Bank
 from datmo.tracks.config import TrackerConfig
-from datmo.tracks.ends import real_ends
-from datmo.tracks.gate import Pairs
-from datmo.tracks.measured import Measured
+from datmo.tracks.measurement.ends import real_ends
+from datmo.tracks.measurement.measured import Measured
+from datmo.tracks.measurement.pairs import Pairs
 from datmo.tracks.models import velocity
-from datmo.tracks.ukf import half_turn
 
 LEAST = 0.1  # [m] a missing extent below this is noise
 VEHICLE = 2.5  # [m] whoever shows a side so long is a vehicle, of which the detector knows the other side

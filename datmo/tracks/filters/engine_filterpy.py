@@ -8,11 +8,11 @@ import numpy as np
 from filterpy.kalman import MerweScaledSigmaPoints, UnscentedKalmanFilter
 
 from datmo.arrays import F64
-from datmo.geometry import wrap_angle
-from datmo.tracks.filters import Filters
+from datmo.geometry import half_turn, wrap_angle
+from datmo.tracks.filters.base import Filters
+from datmo.tracks.filters.moments import tame
+from datmo.tracks.filters.ukf import ALPHA, BETA, KAPPA, square_root
 from datmo.tracks.models import PSI, MotionModel
-from datmo.tracks.moments import tame
-from datmo.tracks.ukf import ALPHA, BETA, KAPPA, half_turn, square_root
 
 
 def residual(a: F64, b: F64) -> F64:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from datmo.tracks import TrackerConfig
-from datmo.tracks.trust import are_logits, evidence, noise_factor, trust
+from datmo.tracks.measurement.trust import are_logits, evidence, noise_factor, trust
 
 CONFIG = TrackerConfig()
 

@@ -9,10 +9,10 @@ from scipy.linalg import expm
 
 from datmo.geometry import wrap_angle
 from datmo.tracks.config import TrackerConfig
-from datmo.tracks.engine_filterpy import FilterpyFilters, residual
-from datmo.tracks.imm import combine, lend, mix, rates, reweigh, transition
+from datmo.tracks.filters.engine_filterpy import FilterpyFilters, residual
+from datmo.tracks.filters.imm import combine, lend, mix, rates, reweigh, transition
+from datmo.tracks.filters.ukf import BatchedFilters, square_root
 from datmo.tracks.models import make_models
-from datmo.tracks.ukf import BatchedFilters, square_root
 
 NAMES = ("cv", "ctrv", "rm", "ctra", "csav", "cca")
 ALL = make_models(TrackerConfig(models=NAMES))

@@ -10,9 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 from datmo.arrays import F64, I64
+from datmo.tracks.association.pda import Links
 from datmo.tracks.bank import Bank
 from datmo.tracks.config import TrackerConfig
-from datmo.tracks.pda import Links
 
 LEAST = 1e-6  # a track is never quite impossible: what it does if it exists stays defined
 

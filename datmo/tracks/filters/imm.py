@@ -12,7 +12,7 @@ from numba import njit
 
 from datmo.arrays import F64, Bool
 from datmo.tracks.config import TrackerConfig
-from datmo.tracks.moments import mixture
+from datmo.tracks.filters.moments import mixture
 
 TERMS = 24  # of the exponential series at one expected step: the rest is below 1e-23
 

@@ -9,11 +9,11 @@ import pytest
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from datmo.tracks.associate import associate, clutter_weights, groups
+from datmo.tracks.association.associate import associate, clutter_weights, groups
+from datmo.tracks.association.jpda import marginals
+from datmo.tracks.association.pda import pda, unassigned
 from datmo.tracks.config import TrackerConfig
-from datmo.tracks.gate import Pairs
-from datmo.tracks.jpda import marginals
-from datmo.tracks.pda import pda, unassigned
+from datmo.tracks.measurement.pairs import Pairs
 
 
 def brute(W, miss, phi=None):

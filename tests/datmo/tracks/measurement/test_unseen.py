@@ -9,7 +9,7 @@ from datmo.messages import Boxes, Sight
 from datmo.messages.sight import AZIMUTH_STEP, ELEVATION_STEP, HIGHEST, LOWEST
 from datmo.tracks import Tracker, TrackerConfig
 from datmo.tracks.bank import Bank
-from datmo.tracks.unseen import FOUND, hold_back
+from datmo.tracks.measurement.unseen import FOUND, hold_back
 
 SHAPE = (round((HIGHEST - LOWEST) / ELEVATION_STEP), round(2 * np.pi / AZIMUTH_STEP))
 

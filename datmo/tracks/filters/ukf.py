@@ -8,9 +8,9 @@ import numpy as np
 from numba import njit
 
 from datmo.arrays import F64
-from datmo.tracks.filters import Filters
+from datmo.tracks.filters.base import Filters
+from datmo.tracks.filters.moments import tame, unscented, upper_root, wrapped
 from datmo.tracks.models import PSI, MotionModel
-from datmo.tracks.moments import tame, unscented, upper_root, wrapped
 
 ALPHA, BETA, KAPPA = 1.0, 2.0, 0.0
 JITTER = 1e-9
@@ -98,11 +98,6 @@ def _corrected(x, P, z, R, yaw, yaw_var):  # type: ignore[no-untyped-def]  # pra
                 for j in range(n):
                     P[t, i, j] -= s * k[i] * k[j]
         x[t, PSI] = wrapped(x[t, PSI])
-
-
-def half_turn(angle: F64) -> F64:
-    """The same direction, heads and tails alike, in [-pi/2, pi/2) [rad]."""
-    return np.asarray((angle + np.pi / 2) % np.pi - np.pi / 2)
 
 
 def inverse_2x2(S: F64) -> F64:

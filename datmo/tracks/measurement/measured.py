@@ -9,7 +9,7 @@ import numpy as np
 from datmo.arrays import F64, Array, Bool
 from datmo.messages import Boxes
 from datmo.tracks.config import TrackerConfig
-from datmo.tracks.trust import noise_factor, trust
+from datmo.tracks.measurement.trust import noise_factor, trust
 
 
 @dataclass(frozen=True)

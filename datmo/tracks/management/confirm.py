@@ -6,12 +6,12 @@ import numpy as np
 
 from datmo.arrays import F64, Bool
 from datmo.messages import Boxes
+from datmo.tracks.association.existence import at_birth
+from datmo.tracks.association.pda import Links
 from datmo.tracks.bank import HISTORY, Bank
-from datmo.tracks.birth import Newborns
 from datmo.tracks.config import TrackerConfig
-from datmo.tracks.existence import at_birth
-from datmo.tracks.gate import Pairs
-from datmo.tracks.pda import Links
+from datmo.tracks.management.birth import Newborns
+from datmo.tracks.measurement.pairs import Pairs
 
 NEW_ACCEL_STD = 1.0  # [m/s²] of a track just confirmed
 

@@ -12,11 +12,11 @@ import numpy as np
 from numba import njit
 
 from datmo.arrays import F64, I64
+from datmo.tracks.association.jpda import marginals
+from datmo.tracks.association.nearest import nearest
+from datmo.tracks.association.pda import Links, pda, unassigned
 from datmo.tracks.config import TrackerConfig
-from datmo.tracks.gate import Pairs
-from datmo.tracks.jpda import marginals
-from datmo.tracks.nearest import nearest
-from datmo.tracks.pda import Links, pda, unassigned
+from datmo.tracks.measurement.pairs import Pairs
 from datmo.union_find import join
 
 RASTER = 160  # cells a side for the area of several gates together

@@ -6,13 +6,9 @@ import numpy as np
 
 from datmo.arrays import F64
 from datmo.messages import Sight
-from datmo.tracks.associate import associate
-from datmo.tracks.bank import Bank
-from datmo.tracks.box import read
-from datmo.tracks.config import TrackerConfig
-from datmo.tracks.existence import given_existence
-from datmo.tracks.gate import (
-    Pairs,
+from datmo.tracks.association.associate import associate
+from datmo.tracks.association.existence import given_existence
+from datmo.tracks.association.gate import (
     densities,
     gate,
     near,
@@ -21,8 +17,12 @@ from datmo.tracks.gate import (
     sure_yaw,
     yaw_ratios,
 )
-from datmo.tracks.measured import Measured
-from datmo.tracks.pda import Links
+from datmo.tracks.association.pda import Links
+from datmo.tracks.bank import Bank
+from datmo.tracks.config import TrackerConfig
+from datmo.tracks.measurement.box import read
+from datmo.tracks.measurement.measured import Measured
+from datmo.tracks.measurement.pairs import Pairs
 
 LEAST_WEIGHT = 1e-200
 

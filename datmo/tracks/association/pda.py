@@ -8,7 +8,7 @@ import numpy as np
 
 from datmo.arrays import F64
 from datmo.tracks.config import TrackerConfig
-from datmo.tracks.gate import Pairs
+from datmo.tracks.measurement.pairs import Pairs
 
 
 @dataclass

@@ -6,7 +6,7 @@ import numpy as np
 
 from datmo.arrays import F64, U8, Bool
 from datmo.messages import Status
-from datmo.tracks import existence
+from datmo.tracks.association import existence
 from datmo.tracks.bank import Bank
 from datmo.tracks.config import TrackerConfig
 

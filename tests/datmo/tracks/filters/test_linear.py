@@ -7,13 +7,13 @@ import pytest
 from filterpy.kalman import KalmanFilter
 
 from datmo.messages import Boxes
-from datmo.tracks.birth import Newborns
 from datmo.tracks.config import TrackerConfig
-from datmo.tracks.engine_filterpy import FilterpyFilters
-from datmo.tracks.imm import combine, mix, rates, transition
-from datmo.tracks.measured import measured
+from datmo.tracks.filters.engine_filterpy import FilterpyFilters
+from datmo.tracks.filters.imm import combine, mix, rates, transition
+from datmo.tracks.filters.ukf import BatchedFilters
+from datmo.tracks.management.birth import Newborns
+from datmo.tracks.measurement.measured import measured
 from datmo.tracks.models import make_models
-from datmo.tracks.ukf import BatchedFilters
 
 MODELS = make_models(TrackerConfig())
 

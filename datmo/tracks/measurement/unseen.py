@@ -13,9 +13,9 @@ import numpy as np
 from datmo.arrays import F64, I64, Bool
 from datmo.messages import Sight
 from datmo.tracks.bank import Bank
+from datmo.tracks.filters.moments import tame
+from datmo.tracks.measurement.visibility import looks
 from datmo.tracks.models import PSI, V
-from datmo.tracks.moments import tame
-from datmo.tracks.visibility import looks
 
 GRID = np.linspace(-2.5, 2.5, 11)  # along the heading, in deviations of the place
 FOUND = 0.9  # probability to be found where all of it is seen

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from datmo.arrays import F64
-from datmo.tracks.gate import Pairs
+from datmo.tracks.measurement.pairs import Pairs
 
 
 def nearest(pairs: Pairs, weight: F64, none: F64, boxes: int) -> tuple[F64, F64]:

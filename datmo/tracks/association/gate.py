@@ -2,52 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-
 import numpy as np
 
-from datmo.arrays import F64, I64, Array
+from datmo.arrays import F64, I64
+from datmo.geometry import half_turn
 from datmo.tracks.config import TrackerConfig
+from datmo.tracks.measurement.pairs import Pairs
 from datmo.tracks.models import PSI
-from datmo.tracks.ukf import half_turn
 
 YAW_OUTLIER = 0.05  # share of sure yaws that are wrong all the same
 SHAPE_FLOOR = 0.05  # a strange size alone never forbids a match
 SIZE_SPREAD = 0.35  # deviation of the logarithm of a box's sides between scans
-
-
-@dataclass
-class Pairs:
-    """Links of a track with a box that might be its own, p rows.
-
-    Attributes:
-        track, box: (p,) rows.
-        z: (p, 2) the box's centre as this track reads it [m]. R: (p, 2, 2) its noise [m²].
-        seen: (p, 2) extent along the track's own axes [m].
-        yaw: (p,) [rad], NaN where not sure. yaw_var: (p,) [rad²].
-        turned: (p,) box yaw in the track's axes [rad].
-        whole: (p, 2) whether rays show both ends of each side to be real.
-        distance: (p,) squared Mahalanobis distance. volume: (p,) of the gate [m²].
-    """
-
-    track: I64
-    box: I64
-    z: F64
-    R: F64
-    seen: F64
-    yaw: F64
-    yaw_var: F64
-    turned: F64
-    whole: Array
-    distance: F64
-    volume: F64
-
-    def __len__(self) -> int:
-        return len(self.track)
-
-    def select(self, rows: Array) -> Pairs:
-        """The pairs of `rows`."""
-        return Pairs(*(getattr(self, f.name)[rows] for f in fields(self)))
 
 
 def near(mean: F64, P: F64, center: F64, reach: F64, config: TrackerConfig) -> tuple[I64, I64]:

@@ -11,13 +11,13 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from datmo.arrays import F64, I64, Array, Bool
-from datmo.geometry import wrap_angle
-from datmo.tracks.box import yaw_is_sure
+from datmo.geometry import half_turn, wrap_angle
+from datmo.tracks.association.gate import determinant, squared_distance
 from datmo.tracks.config import TrackerConfig
-from datmo.tracks.gate import determinant, squared_distance
-from datmo.tracks.measured import Measured
-from datmo.tracks.trust import evidence
-from datmo.tracks.ukf import half_turn, inverse_2x2
+from datmo.tracks.filters.ukf import inverse_2x2
+from datmo.tracks.measurement.box import yaw_is_sure
+from datmo.tracks.measurement.measured import Measured
+from datmo.tracks.measurement.trust import evidence
 
 H = np.eye(2, 4)
 NEW_YAW_RATE_STD = 0.3  # [rad/s] of a track just confirmed

@@ -6,7 +6,7 @@ import numpy as np
 
 from datmo.arrays import F64, I64, Bool
 from datmo.messages import Sight
-from datmo.tracks.visibility import judge
+from datmo.tracks.measurement.visibility import judge
 
 CORNERS = np.array([[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]])  # of a box, by side
 BESIDE, BEYOND = np.deg2rad(0.75), 0.2  # past a corner, at the least [rad], [m], rays tell whether it is real

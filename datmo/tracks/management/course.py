@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from datmo.arrays import F64, Bool
-from datmo.geometry import wrap_angle
+from datmo.geometry import half_turn, wrap_angle
 from datmo.tracks.bank import Bank
 from datmo.tracks.models import OMEGA, PSI, V, velocity
-from datmo.tracks.ukf import half_turn
 
 COURSE_TIME, COURSE_SPEED = 0.5, 2.0  # [s], [m/s]: who goes so fast for so long shows where to
 COURSE_OFF = 0.6  # share of that speed by which the state may differ

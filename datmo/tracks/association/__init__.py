@@ -1,0 +1,1 @@
+"""Whose box is whose: gates, joint probabilities."""

@@ -1,0 +1,1 @@
+"""Filters of one state under one model, and their interaction."""

@@ -1,0 +1,1 @@
+"""Births, confirmations, deaths, second finds, and the course of tracks."""
