@@ -24,6 +24,7 @@ class Bank:
         missed: (t,) time without a hit where it should have been seen [s].
         existence: (t,) probability that there is such an object; 1 unless "jipda" is asked for.
         known: (t, 2) whether both ends of the length, and of the width, were ever seen to be real.
+        held: (t, 2) by side: the end that was last the only real one, 1 front, -1 back, 0 never.
         size: (t, 3) retained dimensions [m]. yaw: (t,) heading of the box [rad].
         z: (t,) height of the box's middle [m], climb: (t,) its rate [m/s].
         score: (t,), kind: (t,) of the last box.
@@ -42,6 +43,7 @@ class Bank:
     missed: F64
     existence: F64
     known: Bool
+    held: F64
     size: F64
     yaw: F64
     z: F64
@@ -63,7 +65,7 @@ class Bank:
         flag, past = np.zeros(0, np.bool_), np.zeros((0, HISTORY, 4))
         return cls(
             whole, real, real, real, flag, x, P, mu, real, real,
-            np.zeros((0, 2), np.bool_), np.zeros((0, 3)),
+            np.zeros((0, 2), np.bool_), np.zeros((0, 2)), np.zeros((0, 3)),
             real, real, real, real, whole, flag, real, past,
         )  # fmt: skip
 
@@ -84,6 +86,11 @@ class Bank:
         """Note which tracks `stamp` [s] hit (t,); after more than `broken` [s] hits begin to count anew."""
         self.steady = np.where(hit & (stamp - self.seen > broken), stamp, self.steady)
         self.fresh, self.seen = hit, np.where(hit, stamp, self.seen)
+
+    def shift(self, by: F64) -> None:
+        """Move the places of all modes, and those of the past, by (t, 2) [m, world]."""
+        self.x[:, :, :2] += by[:, None]
+        self.past[:, :, 1:3] += by[:, None]
 
     def remember(self, stamp: float, mean: F64) -> None:
         """Append the state (t, n) at `stamp` to the past."""

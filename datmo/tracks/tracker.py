@@ -22,7 +22,7 @@ from datmo.tracks.management.birth import Newborns
 from datmo.tracks.management.confirm import as_bank, take_over, unclaimed
 from datmo.tracks.management.course import set_course
 from datmo.tracks.management.recall import recall
-from datmo.tracks.measurement.box import retain
+from datmo.tracks.measurement.box import own_ends, retain
 from datmo.tracks.measurement.measured import Measured, measured, sound
 from datmo.tracks.measurement.trust import are_logits
 from datmo.tracks.measurement.unseen import hold_back
@@ -101,14 +101,14 @@ class Tracker:
         hit = links.missed < HIT
         mean, P = self._held_back(links.missed > UNSEEN, sight)
         bank.mark(hit, stamp, manage.BREAK)
-        retain(bank, given, best, mean, dt, self.config)
+        mean = retain(bank, given, best, mean, dt, self.config)
         manage.charge(bank, hit, visible, empty, dt, self.config)
         manage.judge_motion(bank, mean, P, hit, stamp, self.config)
         set_course(bank, mean, hit, stamp, dt)
         bank.remember(stamp, mean)
         self._note_cuts(links.cut)
         free = unclaimed(given.boxes, pairs, links, bank, mean, hit, self.config)
-        self._births(given.select(free), sight is None)
+        self._births(given.select(free), sight)
         return self._settle(sight is not None)
 
     def predicted(self, stamp: float) -> Boxes:
@@ -182,10 +182,11 @@ class Tracker:
             self.notes["covariances repaired"] = f"{self._estimator.filters.jitters} in this step"
             self._estimator.filters.jitters = 0
 
-    def _births(self, rest: Measured, whole: bool) -> None:
+    def _births(self, rest: Measured, sight: Sight | None) -> None:
         new, config = self._new, self.config
         rows, columns = new.match(rest, config)
-        new.correct(rows, rest.select(columns), whole, config)
+        taken = rest.select(columns)
+        new.correct(rows, taken, None if sight is None else own_ends(sight, taken.boxes), config)
         missed = np.ones(len(new), np.bool_)
         missed[rows] = False
         new.misses += missed

@@ -12,10 +12,12 @@ from scipy.optimize import linear_sum_assignment
 
 from datmo.arrays import F64, I64, Array, Bool
 from datmo.geometry import half_turn, wrap_angle
+from datmo.messages import Boxes
 from datmo.tracks.association.gate import determinant, squared_distance
 from datmo.tracks.config import TrackerConfig
 from datmo.tracks.filters.ukf import inverse_2x2
 from datmo.tracks.measurement.box import yaw_is_sure
+from datmo.tracks.measurement.ends import anchor, moved_middle
 from datmo.tracks.measurement.measured import Measured
 from datmo.tracks.measurement.trust import evidence
 
@@ -29,8 +31,9 @@ TELLING_SPEED = 1.5  # [m/s] from which motion tells the heading
 class Newborns:
     """Tracks of status 1-4, n rows: x (n, 4) px, py, vx, vy; hits and misses; the last box.
 
-    `evidence` is -log of the probability that none of its boxes so far is real, `mass` the sum of their
-    weights, one over their noise squared.
+    `held` (n, 2) is the end that was last the only real one, by side of the box. `evidence` is -log of the
+    probability that none of its boxes so far is real, `mass` the sum of their weights, one over their noise
+    squared.
     """
 
     id: I64
@@ -42,6 +45,7 @@ class Newborns:
     size: F64
     yaw: F64
     sure: Bool
+    held: F64
     z: F64
     score: F64
     kind: I64
@@ -60,7 +64,7 @@ class Newborns:
         P[:, [2, 3], [2, 3]] = config.birth_speed_std**2
         return cls(
             ids, np.full(n, stamp), x, P, np.ones(n, np.int64), np.zeros(n, np.int64),
-            boxes.size.copy(), boxes.yaw.copy(), yaw_is_sure(boxes.size, config),
+            boxes.size.copy(), boxes.yaw.copy(), yaw_is_sure(boxes.size, config), np.zeros((n, 2)),
             boxes.center[:, 2].copy(), boxes.score.astype(float), boxes.kind.astype(np.int64),
             evidence(given.trust), factor**-2,
         )  # fmt: skip
@@ -95,13 +99,18 @@ class Newborns:
         kept = fits[rows, columns]
         return rows[kept], columns[kept]
 
-    def correct(self, rows: I64, given: Measured, whole: bool, config: TrackerConfig) -> None:
-        """Take boxes, one for each of `rows`; the sizes of `whole` ones are averaged, others grow."""
+    def correct(self, rows: I64, given: Measured, real: Bool | None, config: TrackerConfig) -> None:
+        """Take boxes, one for each of `rows`.
+
+        real: (k, 2, 2) ends of the boxes that rays show to be real; as these stay, the middle moves with the
+        size, which grows. None: the boxes are whole, their sizes averaged.
+        """
         boxes, factor = given.boxes, given.factor
+        place = boxes.center[:, :2] if real is None else self._anchored(rows, boxes, real)
         P = self.P[rows]
         S = P[:, :2, :2] + ((config.position_std * factor) ** 2)[:, None, None] * np.eye(2)
         K = np.einsum("nij,njk->nik", P[:, :, :2], inverse_2x2(S))
-        self.x[rows] += np.einsum("nij,nj->ni", K, boxes.center[:, :2] - self.x[rows, :2])
+        self.x[rows] += np.einsum("nij,nj->ni", K, place - self.x[rows, :2])
         self.P[rows] = P - np.einsum("nij,njk,nlk->nil", K, S, K)
         self.hits[rows] += 1
         self.evidence[rows] += evidence(given.trust)
@@ -112,9 +121,18 @@ class Newborns:
         self.sure[rows] |= sure
         size, share = self.size[rows], (factor**-2 / self.mass[rows])[:, None]
         mean, largest = size + share * (boxes.size - size), np.maximum(size, boxes.size)
-        self.size[rows] = mean if whole else largest
+        self.size[rows] = mean if real is None else largest
         self.z[rows] = boxes.center[:, 2]
         self.score[rows], self.kind[rows] = boxes.score, boxes.kind
+
+    def _anchored(self, rows: I64, boxes: Boxes, real: Bool) -> F64:
+        """Places (k, 2) of the boxes as those of the sizes so far, to which the states move first."""
+        more = boxes.size[:, :2] - self.size[rows, :2]
+        across = np.abs(half_turn(boxes.yaw - self.yaw[rows])) > np.pi / 4
+        held = np.where(across[:, None], 0.0, anchor(real))
+        self.held[rows] = np.where(held == 0, self.held[rows], held)
+        self.x[rows, :2] += moved_middle(held, np.maximum(more, 0), boxes.yaw)
+        return boxes.center[:, :2] + moved_middle(held, np.maximum(-more, 0), boxes.yaw)
 
     def ripe(self, config: TrackerConfig) -> Bool:
         """(n,) whether each is to be confirmed: by enough hits, or sooner by boxes that are surely real."""

@@ -11,6 +11,7 @@ from datmo.tracks.association.pda import Links
 from datmo.tracks.bank import HISTORY, Bank
 from datmo.tracks.config import TrackerConfig
 from datmo.tracks.management.birth import Newborns
+from datmo.tracks.measurement.ends import moved_middle
 from datmo.tracks.measurement.pairs import Pairs
 
 NEW_ACCEL_STD = 1.0  # [m/s²] of a track just confirmed
@@ -50,6 +51,7 @@ def as_bank(new: Newborns, stamp: float, size: int, config: TrackerConfig) -> Ba
         missed=np.zeros(n),
         existence=at_birth(n, config),
         known=np.zeros((n, 2), np.bool_),
+        held=new.held * np.where(np.cos(x[:, 2] - new.yaw) < 0, -1.0, 1.0)[:, None],
         size=new.size,
         yaw=x[:, 2].copy(),
         z=new.z,
@@ -66,6 +68,8 @@ def take_over(old: Bank, new: Bank) -> Bank:
     """New tracks under the identity of old ones, row by row: id, age, label and full size."""
     new.id, new.born, new.dynamic = old.id, old.born, old.dynamic
     new.steady, new.known = new.seen, old.known
-    new.size = np.maximum(new.size, old.size)
+    size = np.maximum(new.size, old.size)
+    new.shift(moved_middle(new.held, (size - new.size)[:, :2], new.yaw))
+    new.size = size
     new.past[:, :-1] = old.past[:, 1:]
     return new

@@ -34,6 +34,7 @@ def turn_around(bank: Bank, mean: F64, dt: float) -> None:
     bank.P[rows, :, V, :] *= -1
     bank.P[rows, :, :, V] *= -1
     bank.yaw[rows] = wrap_angle(bank.yaw[rows] + np.pi)
+    bank.held[rows] *= -1
     bank.backward[rows] = 0.0
 
 
@@ -64,4 +65,4 @@ def realign(bank: Bank, mean: F64, hit: Bool, stamp: float) -> None:
     bank.mu[rows] = 1 / bank.mu.shape[1]
     across = rows[np.abs(half_turn(bank.yaw[rows] - course)) > np.pi / 4]
     bank.size[across, :2], bank.known[across] = bank.size[across, 1::-1], bank.known[across, ::-1]
-    bank.yaw[across] = wrap_angle(bank.yaw[across] + np.pi / 2)
+    bank.yaw[across], bank.held[across] = wrap_angle(bank.yaw[across] + np.pi / 2), 0.0

@@ -6,10 +6,10 @@ import numpy as np
 
 from datmo.arrays import F64, I64, Bool
 from datmo.geometry import half_turn
-from datmo.messages import Sight
+from datmo.messages import Boxes, Sight
 from datmo.tracks.bank import Bank
 from datmo.tracks.config import TrackerConfig
-from datmo.tracks.measurement.ends import real_ends
+from datmo.tracks.measurement.ends import anchor, moved_middle, real_ends
 from datmo.tracks.measurement.measured import Measured
 from datmo.tracks.measurement.pairs import Pairs
 from datmo.tracks.models import velocity
@@ -43,8 +43,8 @@ def read(
     crossed = np.abs(turn) > np.pi / 4
     turned = bank.yaw[track] + np.where(crossed, turn - np.copysign(np.pi / 2, turn), turn)
     seen = along_axes(boxes.size[box], crossed)
-    missing = np.maximum(bank.size[track, :2] - seen, 0)
-    missing = np.where(missing < LEAST, 0.0, missing)
+    missing = bank.size[track, :2] - seen
+    missing = np.where(np.abs(missing) < LEAST, 0.0, missing)
     axes = np.stack([np.cos(turned), np.sin(turned), -np.sin(turned), np.cos(turned)], 1).reshape(-1, 2, 2)
     center, real = boxes.center[box], np.full((len(track), 2, 2), sight is None)
     shift = np.zeros((len(track), 2))
@@ -54,7 +54,7 @@ def read(
         real = real_ends(sight, then, axes, seen, bank.size[track, 2])
         shift = whole_center(center[:, :2], axes, seen, missing, real, mean[track, :2], sight)
     whole = np.asarray(real.all(axis=2))
-    cut = np.where(whole, 0.0, missing)
+    cut = np.where(whole, 0.0, np.maximum(missing, 0))
     certain = config.given_std if sight is None else (config.whole_std, config.whole_std)
     std = np.where(whole, certain, config.position_std) * factor
     var = std**2 + (config.partial_std * cut) ** 2
@@ -63,7 +63,14 @@ def read(
     yaw = np.where(yaw_is_sure(boxes.size, config), boxes.yaw, np.nan)[box]
     part = 1 + config.partial_yaw * cut[:, 0] / np.maximum(seen[:, 0], LEAST)
     yaw_var, none = (config.yaw_std * factor[:, 0] * part) ** 2, np.zeros(len(track))
-    return Pairs(track, box, center[:, :2] + shift, R, seen, yaw, yaw_var, turned, whole, none, none)
+    return Pairs(track, box, center[:, :2] + shift, R, seen, yaw, yaw_var, turned, real, none, none)
+
+
+def own_ends(sight: Sight, boxes: Boxes) -> Bool:
+    """(k, 2, 2) by side and end (back, front): whether those of boxes as the rays met them are real."""
+    c, s = np.cos(boxes.yaw), np.sin(boxes.yaw)
+    axes = np.stack([c, s, -s, c], 1).reshape(-1, 2, 2)
+    return real_ends(sight, boxes.center, axes, boxes.size[:, :2], boxes.size[:, 2])
 
 
 def along_axes(size: F64, crossed: Bool) -> F64:
@@ -76,29 +83,29 @@ def whole_center(
 ) -> F64:
     """Shift (p, 2) [m, world] of each centre by half the missing extent, away from the real end.
 
+    So that end stays where it was seen; where more is seen than was retained, the centre moves towards it.
     Where the rays do not tell the ends apart: away from the sensor when it stands beyond an end,
     else towards the predicted centre, never by more than half the missing extent.
     """
     sensor = np.einsum("pai,pi->pa", axes, sight.T_world_sensor[:2, 3] - center)
     wanted = np.einsum("pai,pi->pa", axes, predicted - center)
-    half = missing / 2
+    half = np.maximum(missing, 0) / 2
     default = np.where(
-        np.abs(sensor) >= (seen + missing) / 2, -np.sign(sensor) * half, np.clip(wanted, -half, half)
+        np.abs(sensor) >= seen / 2 + half, -np.sign(sensor) * half, np.clip(wanted, -half, half)
     )
-    back, front = real[:, :, 0], real[:, :, 1]
-    along = np.where(back & ~front, half, np.where(front & ~back, -half, np.where(back & front, 0, default)))
+    along = np.where(real.any(axis=2), -anchor(real) * missing / 2, default)
     return np.asarray(np.einsum("pa,pai->pi", along, axes))
 
 
-def retain(bank: Bank, given: Measured, pairs: Pairs, mean: F64, dt: float, config: TrackerConfig) -> None:
-    """Take the associated boxes (one pair a track) into the retained ones.
+def retain(bank: Bank, given: Measured, pairs: Pairs, mean: F64, dt: float, config: TrackerConfig) -> F64:
+    """Take the associated boxes (one pair a track) into the retained ones; the mean (t, n) after it.
 
     Dimensions grow quickly and shrink slowly; the heading follows sure yaws, and the motion of a
     fast track without one; the height follows with its rate, so that a hidden track climbs on.
     """
     boxes, t, b, doubt = given.boxes, pairs.track, pairs.box, given.factor[pairs.box]
-    bank.known[t] |= pairs.whole.astype(bool)
-    _resize(bank, given, pairs, config)
+    bank.known[t] |= pairs.whole
+    mean = _resize(bank, given, pairs, mean, config)
     sure = np.isfinite(pairs.yaw)
     moves = np.abs(mean[t, 3]) > 2
     target = np.where(sure, pairs.yaw, mean[t, 2])
@@ -110,10 +117,14 @@ def retain(bank: Bank, given: Measured, pairs: Pairs, mean: F64, dt: float, conf
     climb = damped(CLIMB_GAIN, doubt) * error / max(dt, 1e-3)
     bank.climb[t] = np.clip(bank.climb[t] + climb, -limit, limit)
     bank.score[t], bank.kind[t] = boxes.score[b], boxes.kind[b]
+    return mean
 
 
-def _resize(bank: Bank, given: Measured, pairs: Pairs, config: TrackerConfig) -> None:
-    """Retained dimensions: what was seen; of a vehicle's side never seen whole also what is expected."""
+def _resize(bank: Bank, given: Measured, pairs: Pairs, mean: F64, config: TrackerConfig) -> F64:
+    """Retained dimensions: what was seen; of a vehicle's side never seen whole also what is expected.
+
+    As they change the middle moves, while the real end stays.
+    """
     t, b, boxes = pairs.track, pairs.box, given.boxes
     seen = np.column_stack([pairs.seen, boxes.size[b, 2]])
     old = bank.size[t]
@@ -127,6 +138,12 @@ def _resize(bank: Bank, given: Measured, pairs: Pairs, config: TrackerConfig) ->
     more = np.where(told, np.maximum(expected - size[:, :2], 0.0), 0.0)
     size[:, :2] += config.expected_gain * more
     bank.size[t] = size
+    held = anchor(pairs.real)
+    bank.held[t] = np.where(held == 0, bank.held[t], held)
+    shift = np.zeros((len(bank), 2))
+    shift[t] = moved_middle(held, (size - old)[:, :2], pairs.turned)
+    bank.shift(shift)
+    return np.column_stack([mean[:, :2] + shift, mean[:, 2:]])
 
 
 def damped(gain: F64 | float, factor: F64) -> F64:

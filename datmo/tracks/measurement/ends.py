@@ -43,6 +43,22 @@ def real_ends(sight: Sight, center: F64, axes: F64, seen: F64, height: F64) -> B
     return real
 
 
+def anchor(real: Bool) -> F64:
+    """(..., 2) by side, of (..., 2, 2): the one end that is real, 1 front, -1 back; 0 if both or none."""
+    return np.asarray(real[..., 1].astype(float) - real[..., 0])
+
+
+def moved_middle(held: F64, change: F64, yaw: F64) -> F64:
+    """(p, 2) [m, world] by which the middle of a box moves whose sides change while one end stays.
+
+    Args:
+        held: (p, 2) that end, as of `anchor`. change: (p, 2) of length and width [m]. yaw: (p,).
+    """
+    c, s = np.cos(yaw), np.sin(yaw)
+    along, across = (-held * change / 2).T
+    return np.column_stack([c * along - s * across, s * along + c * across])
+
+
 def _other_end(corner: I64, side: int) -> I64:
     """The corner at the other end of a side, in the order of `CORNERS`."""
     return np.asarray(corner ^ (2 >> side))

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 
-from datmo.arrays import F64, I64, Array
+import numpy as np
+
+from datmo.arrays import F64, I64, Array, Bool
 
 
 @dataclass
@@ -17,7 +19,8 @@ class Pairs:
         seen: (p, 2) extent along the track's own axes [m].
         yaw: (p,) [rad], NaN where not sure. yaw_var: (p,) [rad²].
         turned: (p,) box yaw in the track's axes [rad].
-        whole: (p, 2) whether rays show both ends of each side to be real.
+        real: (p, 2, 2) by side and end (back, front) of the box in the track's axes: whether rays show it
+            to be real.
         distance: (p,) squared Mahalanobis distance. volume: (p,) of the gate [m²].
     """
 
@@ -29,12 +32,17 @@ class Pairs:
     yaw: F64
     yaw_var: F64
     turned: F64
-    whole: Array
+    real: Bool
     distance: F64
     volume: F64
 
     def __len__(self) -> int:
         return len(self.track)
+
+    @property
+    def whole(self) -> Bool:
+        """(p, 2) whether both ends of each side are real."""
+        return np.asarray(self.real.all(axis=2))
 
     def select(self, rows: Array) -> Pairs:
         """The pairs of `rows`."""

@@ -45,7 +45,7 @@ def pairs_of(track, box):
     zero = np.zeros(n)
     return Pairs(
         np.asarray(track, int), np.asarray(box, int), np.zeros((n, 2)), np.tile(np.eye(2), (n, 1, 1)),
-        np.ones((n, 2)), zero, zero, zero, np.zeros((n, 2), bool), zero, np.full(n, 3.0),
+        np.ones((n, 2)), zero, zero, zero, np.zeros((n, 2, 2), bool), zero, np.full(n, 3.0),
     )  # fmt: skip
 
 

@@ -129,7 +129,7 @@ def some_pairs(track, box, volume=3.0):
     zero = np.zeros(n)
     return Pairs(
         np.array(track), np.array(box), np.zeros((n, 2)), np.tile(np.eye(2), (n, 1, 1)), np.ones((n, 2)),
-        zero, zero, zero, np.zeros((n, 2), bool), zero, np.full(n, volume),
+        zero, zero, zero, np.zeros((n, 2, 2), bool), zero, np.full(n, volume),
     )  # fmt: skip
 
 
