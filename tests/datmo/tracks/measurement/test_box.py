@@ -8,6 +8,7 @@ import pytest
 from datmo.messages import Boxes, Detections, Sight
 from datmo.messages.sight import AZIMUTH_STEP, ELEVATION_STEP, HIGHEST, LOWEST
 from datmo.tracks import Tracker, TrackerConfig
+from datmo.tracks.measurement.ends import anchor, moved_middle
 
 SHAPE = (round((HIGHEST - LOWEST) / ELEVATION_STEP), round(2 * np.pi / AZIMUTH_STEP))
 X, SPEED, LENGTH, WIDTH = 12.0, 6.0, 4.4, 1.8
@@ -78,3 +79,28 @@ def turned_by_a_wall(partial):
 def test_the_yaw_of_what_a_wall_cuts_off_hardly_turns_a_car():
     assert turned_by_a_wall(0.0) > 0.1
     assert turned_by_a_wall(2.0) < 0.8 * turned_by_a_wall(0.0)
+
+
+def test_a_new_track_knows_its_speed_as_it_comes_out_from_behind_a_wall():
+    """Its front moves at 6 m/s, the middle of what is seen of it at half of that."""
+    tracker, seen = Tracker(), {}
+    for k in range(1, 8):
+        front = 0.1 * SPEED * k
+        wall = (5.0, -30.0, 0.0)
+        tracks = tracker.step(near_side(0.0, front), 0.1 * k, sight(0.0, front, wall))
+        seen[k] = tracks.boxes.velocity[0], tracks.boxes.center[0], tracks.boxes.size[0, 0], front
+    assert len(tracks) == 1
+    for k in (4, 5, 6, 7):
+        velocity, center, length, front = seen[k]
+        assert velocity[1] == pytest.approx(SPEED, rel=0.15), k
+        assert center[1] + length / 2 == pytest.approx(front, abs=0.4)
+
+
+def test_the_middle_moves_away_from_the_end_that_stays():
+    real = np.array([[[False, True], [True, True]], [[True, False], [False, True]], [[False, False]] * 2])
+    held = anchor(real)
+    assert held.tolist() == [[1, 0], [-1, 1], [0, 0]]
+    moved = moved_middle(
+        held, np.array([[2.0, 9.0], [2.0, 1.0], [5.0, 5.0]]), np.array([0.0, np.pi / 2, 1.0])
+    )
+    np.testing.assert_allclose(moved, [[-1, 0], [0.5, 1], [0, 0]], atol=1e-12)
