@@ -111,9 +111,8 @@ def test_new_tracks_are_filtered_by_the_kalman_filter():
     for k in range(10):
         place = np.array([1 + 0.8 * k, 2 - 0.3 * k, 0]) + rng.normal(0, 0.1, 3)
         new.predict(T, config)
-        new.correct(
-            np.array([0]), measured(Boxes(place[None], one.size, one.yaw), False, config), True, config
-        )
+        given = measured(Boxes(place[None], one.size, one.yaw), False, config)
+        new.correct(np.array([0]), given, None, config)
         kf.predict()
         kf.update(place[:2])
     np.testing.assert_allclose(new.x[0], kf.x, rtol=1e-9, atol=1e-9)
