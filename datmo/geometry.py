@@ -22,6 +22,12 @@ def half_turn(angle: Array | float) -> F64:
     return np.asarray((np.asarray(angle, float) + np.pi / 2) % np.pi - np.pi / 2)
 
 
+def axes_of(yaw: F64) -> F64:
+    """(k, 2, 2) unit vectors along and across each heading (k,) [rad], row by row."""
+    c, s = np.cos(yaw), np.sin(yaw)
+    return np.stack([c, s, -s, c], 1).reshape(-1, 2, 2)
+
+
 def transform(T_a_b: F64, points_b: Array) -> F64:
     """Points (n, 3) in b expressed in a, (n, 3) float64."""
     x, y, z = np.asarray(points_b, float).T

@@ -9,6 +9,7 @@ import numpy as np
 
 from datmo.arrays import F32, F64, I32, I64, U8, Array, Bool
 from datmo.errors import MessageError
+from datmo.geometry import half_turn
 from datmo.messages.base import Message, Status
 
 EDGE = 0.01  # [m] least seen side: points on one line are as wide as their noise
@@ -125,8 +126,7 @@ class Detections(Boxes):
         center[:, 1] += s * x + c * y
         size[:, 0], size[:, 1] = np.maximum(along, across), np.maximum(np.minimum(along, across), EDGE)
         yaw = np.where(along >= across, self.yaw, self.yaw + np.pi / 2)
-        yaw = (yaw + np.pi / 2) % np.pi - np.pi / 2
-        return Boxes(center, size, yaw, self.velocity, self.score, self.id, self.kind)
+        return Boxes(center, size, half_turn(yaw), self.velocity, self.score, self.id, self.kind)
 
     def whole_extent(self) -> F64:
         """See `Boxes`: where what was seen is longer across, the sides change places."""

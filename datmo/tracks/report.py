@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from datmo.arrays import F64, U8, Array
-from datmo.geometry import half_turn
+from datmo.geometry import axes_of, half_turn
 from datmo.messages import Boxes, Tracks
 from datmo.tracks.bank import Bank
 from datmo.tracks.config import TrackerConfig
@@ -38,8 +38,7 @@ def lasting(bank: Bank, config: TrackerConfig) -> F64:
     Larger along a side of which an end was never seen, as then its length is a guess.
     """
     std = config.bias_std + np.where(bank.known, 0.0, config.unknown_side_std * bank.size[:, :2])
-    c, s = np.cos(bank.yaw), np.sin(bank.yaw)
-    axes = np.stack([c, s, -s, c], 1).reshape(-1, 2, 2)
+    axes = axes_of(bank.yaw)
     return np.asarray(np.einsum("ta,tai,taj->tij", std**2, axes, axes))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from datmo.arrays import F64, I64, Bool
-from datmo.geometry import half_turn
+from datmo.geometry import axes_of, half_turn
 from datmo.messages import Boxes, Sight
 from datmo.tracks.bank import Bank
 from datmo.tracks.config import TrackerConfig
@@ -45,7 +45,7 @@ def read(
     seen = along_axes(boxes.size[box], crossed)
     missing = bank.size[track, :2] - seen
     missing = np.where(np.abs(missing) < LEAST, 0.0, missing)
-    axes = np.stack([np.cos(turned), np.sin(turned), -np.sin(turned), np.cos(turned)], 1).reshape(-1, 2, 2)
+    axes = axes_of(turned)
     center, real = boxes.center[box], np.full((len(track), 2, 2), sight is None)
     shift = np.zeros((len(track), 2))
     if sight is not None and config.correct_ends and len(track):
@@ -68,9 +68,7 @@ def read(
 
 def own_ends(sight: Sight, boxes: Boxes) -> Bool:
     """(k, 2, 2) by side and end (back, front): whether those of boxes as the rays met them are real."""
-    c, s = np.cos(boxes.yaw), np.sin(boxes.yaw)
-    axes = np.stack([c, s, -s, c], 1).reshape(-1, 2, 2)
-    return real_ends(sight, boxes.center, axes, boxes.size[:, :2], boxes.size[:, 2])
+    return real_ends(sight, boxes.center, axes_of(boxes.yaw), boxes.size[:, :2], boxes.size[:, 2])
 
 
 def along_axes(size: F64, crossed: Bool) -> F64:
