@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from datmo.arrays import F64, I64, U8, Bool
-from datmo.geometry import corners_bev, overlap_bev
+from datmo.geometry import corners_bev, half_turn, overlap_bev
 from datmo.messages import VEHICLES, Frame, Kind, Truth, is_any
 from eval.metrics.matching import Returns, assign, distances, gates
 from eval.metrics.ratio import mean, ratio, spread
@@ -64,7 +64,7 @@ def pair_errors(frame: Frame, truth: Truth, matched: Matched) -> tuple[I64, dict
     """
     d = np.flatnonzero(matched.actor >= 0)
     found, true = frame.boxes.select(d), truth.boxes.select(matched.actor[d])
-    turn = (found.yaw - true.yaw + np.pi / 2) % np.pi - np.pi / 2
+    turn = half_turn(found.yaw - true.yaw)
     a, b = corners_bev(found.center, found.size, found.yaw), corners_bev(true.center, true.size, true.yaw)
     sensor = frame.scan.T_world_sensor[:2, 3]
     nearest = np.argmin(np.linalg.norm(b - sensor, axis=2), axis=1)
