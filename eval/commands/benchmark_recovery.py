@@ -30,13 +30,13 @@ def recovery(
 
     Ours, its ablation, the thesis's tracker and a plain Kalman filter, the latter on the boxes that the
     loop made. A seed gives about 150 events in three to four minutes of two cores; with --enough 150 some
-    40 seeds give every class so many in an hour and a half. With --out, leaves recovery.json, .md and .png
+    80 seeds give every class so many in an hour and a half. With --out, leaves recovery.json, .md and .png
     (the curves) in DIR.
 
     \b
     Examples:
       datmo benchmark recovery --workers 2
-      datmo benchmark recovery --seeds 60 --enough 150 --workers 2 --ablation --out runs/recovery
+      datmo benchmark recovery --seeds 80 --enough 150 --workers 2 --ablation --out runs/recovery
     """
     from eval import console
     from eval.benchmark.recovery import ABLATIONS, RIVALS, benchmark_recovery
