@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from datmo.arrays import F64, I64, Bool
+from datmo.geometry import axes_of
 from datmo.messages import Sight
 from datmo.tracks.measurement.visibility import judge
 
@@ -54,9 +55,7 @@ def moved_middle(held: F64, change: F64, yaw: F64) -> F64:
     Args:
         held: (p, 2) that end, as of `anchor`. change: (p, 2) of length and width [m]. yaw: (p,).
     """
-    c, s = np.cos(yaw), np.sin(yaw)
-    along, across = (-held * change / 2).T
-    return np.column_stack([c * along - s * across, s * along + c * across])
+    return np.asarray(np.einsum("pa,pai->pi", -held * change / 2, axes_of(yaw)))
 
 
 def _other_end(corner: I64, side: int) -> I64:
